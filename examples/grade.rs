@@ -1,7 +1,7 @@
 //! Grades every program of a folder in the sandbox: `cargo run --example grade -- FOLDER [SUITE]`.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
-    files::Place,
+    files::FilePlace,
     sandbox::{Backend, Supervisor, supervisor_main},
     suite::{
         Cancellation, batch,
@@ -24,7 +24,7 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         backend: &Backend::with_all_layers(supervisor)?,
         program: "FOSSSim",
         options: Options { jobs: 2, fail_fast: false, uses_recordings: false },
-        fault_folder: &Place::new(folder, "faults"),
+        fault_folder: &FilePlace::new(folder, "faults"),
         trace_file: None,
         cards: None,
         smallest: None,

@@ -20,7 +20,7 @@ pub fn archive(bytes: &[u8]) -> bool {
     fs::write(&outside, "untouched").expect("a file");
     fs::create_dir_all(&folder).expect("a folder");
     let open = || File::open(&file).expect("the file");
-    let looked = fosssim_intake::look_through(open(), LIMITS);
+    let looked = fosssim_intake::list_archive(open(), LIMITS);
     let unpacked = fosssim_intake::unpack(open(), &folder, LIMITS);
     assert_eq!(looked.is_ok(), unpacked.is_ok(), "what is looked through can be unpacked: {looked:?}, {unpacked:?}");
     // In every case nothing lies outside, nothing is a link, and no more came out than may.

@@ -6,7 +6,7 @@ use fosssim_model::{
     trace::{Frame, Layout, PolynomialLabel, Reader, collect_labels},
 };
 use fosssim_num::vector::Vec2;
-use fosssim_report::problems;
+use fosssim_report::scene_problems;
 use pyo3::{exceptions::PyValueError, prelude::*, pybacked::PyBackedBytes, types::PyBytes};
 
 /// A trace in memory, which is the only file of a request.
@@ -36,7 +36,7 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>>
 fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
     match scene::read(name, xml) {
         Ok(LoadedScene { scene, .. }) => Ok(scene),
-        Err(refused) => Err(PyValueError::new_err(problems::render_errors(name, xml, &refused))),
+        Err(refused) => Err(PyValueError::new_err(scene_problems::render_errors(name, xml, &refused))),
     }
 }
 

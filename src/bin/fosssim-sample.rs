@@ -5,5 +5,5 @@
 use fosssim_oracle::sample;
 
 fn main() -> std::process::ExitCode {
-    sample::main(std::env::args_os(), sample::pin::pinned_mistake())
+    sample::main(std::env::args_os(), sample::pinned_mistake::pinned_mistake())
 }

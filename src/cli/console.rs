@@ -4,7 +4,7 @@ use super::{
     arguments::ColorChoice,
     arguments::values::TextOrJson,
     interrupt,
-    screen::{clear_bars, on_screen, write_above_bars},
+    progress_bars::{clear_bars, lock_visible_bars, write_above_bars},
 };
 use crate::{
     judge::replay::{Progress, Remark},
@@ -34,7 +34,7 @@ pub(super) fn choose_color(color: ColorChoice) {
 static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Turns off reports on standard output, bars and warnings; errors are still printed.
-pub(super) fn be_quiet(quiet: bool) {
+pub(super) fn set_quiet(quiet: bool) {
     IS_QUIET.store(quiet, Ordering::Relaxed);
 }
 
@@ -148,7 +148,7 @@ pub(super) fn wants_bars() -> bool {
 /// them, and an interrupt removes them.
 pub(super) fn show_bars() -> MultiProgress {
     interrupt::clean_up_when_interrupted();
-    on_screen().get_or_insert_with(MultiProgress::new).clone()
+    lock_visible_bars().get_or_insert_with(MultiProgress::new).clone()
 }
 
 /// Adds a progress bar with this length and this template.
@@ -170,14 +170,14 @@ const BAR_INTERVAL: Duration = Duration::from_millis(200);
 /// second.
 pub(super) struct Bar {
     steps: u64,
-    begun: Option<Instant>,
-    shown: Option<ProgressBar>,
+    start_time: Option<Instant>,
+    progress_bar: Option<ProgressBar>,
 }
 
 impl Bar {
     /// Creates a progress bar for a number of steps.
     pub(super) fn new(steps: u32) -> Self {
-        Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
+        Self { steps: u64::from(steps), start_time: wants_bars().then(Instant::now), progress_bar: None }
     }
 
     /// Creates a progress bar for a number of runs, each of which may take long. The bar is shown immediately, with the
@@ -188,12 +188,12 @@ impl Bar {
             bar.enable_steady_tick(BAR_INTERVAL);
             bar
         };
-        Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
+        Self { steps: runs, start_time: None, progress_bar: wants_bars().then(|| bar(runs)) }
     }
 
     /// Shows on the bar that a run begins.
     pub(super) fn next_run(&self, name: &str) {
-        if let Some(bar) = &self.shown {
+        if let Some(bar) = &self.progress_bar {
             bar.inc(1);
             bar.set_message(name.to_owned());
         }
@@ -201,10 +201,10 @@ impl Bar {
 
     /// Shows on the bar how many steps are finished.
     pub(super) fn show_step(&mut self, step: u32) {
-        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
-            self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
+        if self.progress_bar.is_none() && self.start_time.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
+            self.progress_bar = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
         }
-        if let Some(bar) = &self.shown {
+        if let Some(bar) = &self.progress_bar {
             bar.set_position(u64::from(step));
         }
     }
@@ -212,7 +212,7 @@ impl Bar {
 
 impl Drop for Bar {
     fn drop(&mut self) {
-        if let Some(bar) = &self.shown {
+        if let Some(bar) = &self.progress_bar {
             bar.finish_and_clear();
             clear_bars();
         }

@@ -1,6 +1,6 @@
 //! The defaults for the options of `grade`. They are in the file `fosssim.toml` in the working folder, or in the
 //! nearest folder above it.
-use crate::files::{FileError, Place};
+use crate::files::{FileError, FilePlace};
 use anyhow::{Context, Result};
 use clap::Command;
 use serde::Deserialize;
@@ -29,7 +29,7 @@ struct Defaults {
 /// Fails if the file can't be read, or if its contents are invalid.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
-        let text = match Place::new(folder, DEFAULTS_FILE).read(MAX_BYTES) {
+        let text = match FilePlace::new(folder, DEFAULTS_FILE).read(MAX_BYTES) {
             Ok(text) => text,
             Err(FileError::Missing { .. }) => continue,
             Err(error) => {

@@ -2,7 +2,7 @@
 //!
 //! After the first signal, a grading ends its programs and writes the results that are known. If there is no progress
 //! for a few seconds, the program ends anyway.
-use super::{exit, screen};
+use super::{exit, progress_bars};
 use crate::suite::Cancellation;
 use std::{
     fs,
@@ -19,7 +19,7 @@ use std::{
 const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the temporary files that an interrupt has to remove.
-pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
+pub(super) fn lock_pending_files() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     static PENDING_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     PENDING_FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -42,11 +42,11 @@ fn end() -> ! {
         std::process::exit(exit::INTERRUPTED.into());
     });
     // The lock is held until the end, so that in the meantime no file is renamed or created.
-    let pending = pending();
+    let pending = lock_pending_files();
     for path in pending.iter() {
         drop(fs::remove_file(path));
     }
-    screen::clear_bars();
+    progress_bars::clear_bars();
     std::process::exit(exit::INTERRUPTED.into());
 }
 
@@ -60,7 +60,7 @@ pub(super) fn show_activity() {
 
 /// Returns a cancellation that SIGINT and SIGTERM trigger. The program ends immediately after a second signal, and also
 /// if a grading does not finish.
-pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
+pub(super) fn cancellation_by_signals() -> Arc<Cancellation> {
     static CANCELLATION: OnceLock<Arc<Cancellation>> = OnceLock::new();
     CANCELLATION
         .get_or_init(|| {
@@ -78,16 +78,16 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                     return;
                 }
                 // This thread is started first, because the calls below could block as well.
-                thread::spawn(end_when_nothing_moves);
+                thread::spawn(end_when_idle);
                 signalled.cancel();
-                screen::write_above_bars(b"\nstopping (press Ctrl-C again to stop immediately)\n");
+                progress_bars::write_above_bars(b"\nstopping (press Ctrl-C again to stop immediately)\n");
             }));
             cancellation
         })
         .clone()
 }
 
-fn end_when_nothing_moves() {
+fn end_when_idle() {
     let (mut moves, mut since) = (ACTIVITY_COUNT.load(Ordering::Relaxed), Instant::now());
     while since.elapsed() < IDLE_LIMIT {
         thread::sleep(Duration::from_millis(100));

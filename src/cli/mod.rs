@@ -10,10 +10,10 @@ mod input;
 mod interrupt;
 mod original;
 mod output;
-mod screen;
+mod progress_bars;
 mod selection;
 
-use crate::{report::foreign::strip_control_characters, sample};
+use crate::{report::untrusted_text::strip_control_characters, sample};
 use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
@@ -22,11 +22,11 @@ use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 #[must_use]
 pub fn main() -> ExitCode {
     // A copy of this program with a pinned mistake is nothing but a submission.
-    if let Some(mistake) = sample::pin::pinned_mistake() {
+    if let Some(mistake) = sample::pinned_mistake::pinned_mistake() {
         return sample::main(std::env::args_os(), Some(mistake));
     }
     // This is checked before the other commands, because it is called most often and must start quickly.
-    crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
+    crate::original::run_if_requested(&original::Program).unwrap_or_else(run)
 }
 
 /// Runs any command except for the drop-in for the original.
@@ -35,7 +35,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
-    commands::shell::complete_if_asked();
+    commands::shell::complete_if_requested();
     if words.get(1).is_some_and(|word| word == "sample") {
         return sample::main(words.into_iter().skip(1), None);
     }

@@ -9,11 +9,11 @@
 //! the same name is replaced, even if it is a link.
 use super::{
     console,
-    interrupt::{clean_up_when_interrupted, pending, show_activity},
+    interrupt::{clean_up_when_interrupted, lock_pending_files, show_activity},
 };
 use crate::{
-    files::{self, Identity, Place, Replacement, open_for_writing},
-    report::foreign::one_line,
+    files::{self, FilePlace, Identity, Replacement, open_for_writing},
+    report::untrusted_text::to_one_line,
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -86,7 +86,7 @@ impl Output {
             bail!("there is no folder {}; make it first", folder.display());
         }
         let name = target.file_name().context("it names a directory; name a file inside")?;
-        let begin = || files::Folder::to_write(folder)?.replacement(name, mode);
+        let begin = || files::Folder::open_to_write(folder)?.replacement(name, mode);
         Ok(Self::File(begin_file(begin).with_context(|| format!("cannot create a file in {}", folder.display()))?))
     }
 
@@ -119,7 +119,7 @@ impl Output {
     /// # Errors
     ///
     /// Fails if the output can't be written.
-    pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
+    pub(super) fn finish_and_print(self, bytes: &[u8], is_page: bool) -> Result<()> {
         let file = match &self {
             Self::File(file) => Some(file.target()),
             _ => None,
@@ -160,13 +160,13 @@ impl Output {
 /// Prints the path of an output. If it is a page, the text says to open it in a browser.
 pub(super) fn print_path(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
-    console::print_remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
+    console::print_remark(format!("{what}: {}\n", to_one_line(&file.display().to_string())));
 }
 
 impl Output {
     /// Calls `act` with the writer. If the reader has closed the pipe, returns `taken` instead of an error, so that the
     /// command can finish.
-    fn write_through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+    fn write_until_closed<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),
             Self::Stdout => match act(&mut io::stdout()) {
@@ -181,15 +181,15 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.write_through(bytes.len(), |out| out.write(bytes))
+        self.write_until_closed(bytes.len(), |out| out.write(bytes))
     }
 
     fn write_vectored(&mut self, parts: &[IoSlice<'_>]) -> io::Result<usize> {
-        self.write_through(parts.iter().map(|part| part.len()).sum(), |out| out.write_vectored(parts))
+        self.write_until_closed(parts.iter().map(|part| part.len()).sum(), |out| out.write_vectored(parts))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.write_through((), |out| out.flush())
+        self.write_until_closed((), |out| out.flush())
     }
 }
 
@@ -208,17 +208,17 @@ pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
 /// # Errors
 ///
 /// Fails if the file can't be written. An existing file is then unchanged.
-pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
+pub(super) fn write_below(place: &FilePlace, bytes: &[u8]) -> Result<()> {
     write_whole(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
-/// Writes everything that a reader returns into a file, as [`write_at`] does.
+/// Writes everything that a reader returns into a file, as [`write_below`] does.
 ///
 /// # Errors
 ///
-/// Fails like [`write_at`]. Also fails if the reader fails.
-pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
+/// Fails like [`write_below`]. Also fails if the reader fails.
+pub(super) fn copy_below(place: &FilePlace, from: &mut impl io::Read) -> io::Result<()> {
     write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
@@ -236,7 +236,7 @@ fn write_whole(
 fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
     show_activity();
-    let mut pending = pending();
+    let mut pending = lock_pending_files();
     let file = begin()?;
     pending.push(file.unfinished_path());
     Ok(file)
@@ -244,7 +244,7 @@ fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Rep
 
 /// Gives a complete file its final name.
 fn finish_file(file: Replacement) -> io::Result<()> {
-    let mut pending = pending();
+    let mut pending = lock_pending_files();
     let path = file.unfinished_path();
     let finished = file.finish();
     pending.retain(|waiting| *waiting != path);
@@ -272,13 +272,13 @@ impl Folder {
             }
             Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
         }
-        let opened = files::Folder::to_write(name).with_context(|| format!("cannot open {}", name.display()))?;
+        let opened = files::Folder::open_to_write(name).with_context(|| format!("cannot open {}", name.display()))?;
         Ok(Self(opened))
     }
 
     /// Opens a folder that exists; `None` if it does not exist.
     pub(super) fn open_existing(name: &Path) -> Option<Self> {
-        files::Folder::to_write(name).ok().map(Self)
+        files::Folder::open_to_write(name).ok().map(Self)
     }
 
     /// Returns the name of the output as the user typed it, in printable form.

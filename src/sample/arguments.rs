@@ -1,5 +1,5 @@
 //! The command line of the sample. It has the course's arguments, and some more.
-use super::pin;
+use super::pinned_mistake;
 use crate::{
     student::{self, Mistake, Student, all_rows},
     suite::suggestions,
@@ -63,22 +63,26 @@ impl Options {
     /// # Errors
     ///
     /// Fails if there is no such mistake. The error says so in a sentence.
-    pub fn student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
-        student(pinned, self.mistake.clone(), program.map(Path::new))
+    pub fn choose_student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
+        student_from_options(pinned, self.mistake.clone(), program.map(Path::new))
     }
 }
 
 /// Returns a student who makes the pinned mistakes. If there are none, the mistakes are those that the command line,
 /// the program's name, or the environment selects.
-fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
+fn student_from_options(
+    pinned: Option<&str>,
+    option: Option<String>,
+    program: Option<&Path>,
+) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pinned {
-        if id == pin::RIGHT_ID {
+        if id == pinned_mistake::RIGHT_ID {
             return Ok(Student::default());
         }
         ("this copy of the program", id.to_owned())
     } else if let Some(ids) = option {
         ("--mistake", ids)
-    } else if let Some(ids) = mistake_of_name(program) {
+    } else if let Some(ids) = find_mistake_in_name(program) {
         ("the program's name", ids)
     } else if let Some(ids) = std::env::var(MISTAKE_VARIABLE).ok().filter(|ids| !ids.is_empty()) {
         (MISTAKE_VARIABLE, ids)
@@ -98,7 +102,7 @@ fn parse_mistake(source: &str, id: &str) -> Result<Mistake, String> {
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 
-fn mistake_of_name(program: Option<&Path>) -> Option<String> {
+fn find_mistake_in_name(program: Option<&Path>) -> Option<String> {
     let name = program?.file_name()?.to_str()?;
     name.strip_prefix(NAME_PREFIX).map(str::to_owned)
 }
@@ -114,7 +118,7 @@ mod tests {
 
     #[test]
     fn a_link_may_name_the_mistake() {
-        let name = |path: &str| mistake_of_name(Some(Path::new(path)));
+        let name = |path: &str| find_mistake_in_name(Some(Path::new(path)));
         assert_eq!(name("bin/fosssim-sample.pp-no-two").as_deref(), Some("pp-no-two"));
         assert_eq!(name("bin/fosssim-sample"), None);
         assert_eq!(name("bin/submission"), None);
@@ -122,17 +126,18 @@ mod tests {
 
     #[test]
     fn a_misspelt_mistake_is_named_with_what_comes_close() {
-        let message = student(None, Some("no-two".to_owned()), None).unwrap_err();
+        let message = student_from_options(None, Some("no-two".to_owned()), None).unwrap_err();
         assert!(message.contains("'no-two'") && message.contains("pp-no-two"), "{message}");
     }
 
     #[test]
     fn several_mistakes_are_made_at_once() {
-        let several = student(None, Some("pp-no-two,pe-empty,geometric-empty".to_owned()), None).expect("they exist");
+        let several = student_from_options(None, Some("pp-no-two,pe-empty,geometric-empty".to_owned()), None)
+            .expect("they exist");
         for id in ["pp-no-two", "pe-empty", "geometric-empty"] {
             assert!(student::find(id).is_some_and(|row| several.makes(row.mistake)), "{id}");
         }
-        let message = student(None, Some(["pp-empty"; MAX_COUNT + 1].join(",")), None).unwrap_err();
+        let message = student_from_options(None, Some(["pp-empty"; MAX_COUNT + 1].join(",")), None).unwrap_err();
         assert!(message.contains(&format!("at most {MAX_COUNT}")), "{message}");
     }
 }

@@ -36,12 +36,12 @@ Overall success: Passed.
 
 /// Text that attacks a log in which text is not escaped. It contains colors, the window's title, markup, a formula and
 /// control characters.
-const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
+const ESCAPE_SEQUENCES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
     <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\
     ]]> \u{202e}reversed\u{202c} \u{0}\u{8}\u{c}\n";
 
 /// Runs the actions at the start. Some programs do nothing else, and children only wait.
-pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8>> {
+pub fn act_at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8>> {
     if std::env::var_os(CHILD_VARIABLE).is_some() {
         sleep(Duration::from_secs(60));
         return Ok(Some(0));
@@ -64,7 +64,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
                     .spawn()?;
             }
         }
-        Some(Mistake::HostileEscapes) => io::stderr().write_all(ESCAPES.as_bytes())?,
+        Some(Mistake::HostileEscapes) => io::stderr().write_all(ESCAPE_SEQUENCES.as_bytes())?,
         Some(Mistake::HostileForgedVerdict) => io::stdout().write_all(FORGED_VERDICT.as_bytes())?,
         _ => {}
     }
@@ -74,7 +74,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
 /// The action of a hostile program in the middle of a run.
 pub enum MidwayAct {
     /// The program continues the simulation.
-    GoOn,
+    Continue,
     /// The program stops writing, and exits with this status.
     Leave(u8),
     /// The program writes a part of a record, and exits with this status.
@@ -93,22 +93,22 @@ pub fn act_midway(student: Student) -> io::Result<MidwayAct> {
         Some(Mistake::HostileSleep) => loop {
             sleep(Duration::from_secs(3600));
         },
-        Some(Mistake::HostileFloodStdout) => flood(&mut io::stdout().lock(), PRINTED_BYTES)?,
-        Some(Mistake::HostileFloodStderr) => flood(&mut io::stderr().lock(), PRINTED_BYTES)?,
+        Some(Mistake::HostileFloodStdout) => write_flood(&mut io::stdout().lock(), PRINTED_BYTES)?,
+        Some(Mistake::HostileFloodStderr) => write_flood(&mut io::stderr().lock(), PRINTED_BYTES)?,
         Some(Mistake::HostileMemory) => {
             let hog = vec![1_u8; HOG_BYTES];
             black_box(&hog);
         }
         _ => {}
     }
-    Ok(MidwayAct::GoOn)
+    Ok(MidwayAct::Continue)
 }
 
 /// Writes the bytes that the program adds after the last record.
 pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
-        Some(Mistake::HostileFloodTrace) => flood(output, FLOOD_BYTES),
+        Some(Mistake::HostileFloodTrace) => write_flood(output, FLOOD_BYTES),
         _ => Ok(()),
     }
 }
@@ -118,7 +118,7 @@ pub fn exit_status(student: Student) -> u8 {
     u8::from(student.makes(Mistake::HostileExitOne))
 }
 
-fn flood(output: &mut impl Write, bytes: usize) -> io::Result<()> {
+fn write_flood(output: &mut impl Write, bytes: usize) -> io::Result<()> {
     let block = [b'x'; 1 << 16];
     for _ in 0..bytes / block.len() {
         output.write_all(&block)?;

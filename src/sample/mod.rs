@@ -12,7 +12,7 @@
 mod arguments;
 mod hostile;
 mod listing;
-pub mod pin;
+pub mod pinned_mistake;
 mod run;
 mod trace;
 
@@ -27,7 +27,7 @@ pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> Exit
     let words: Vec<OsString> = words.collect();
     // If the command line is wrong, this ends the program with the status 2.
     let options = Options::parse_from(&words);
-    let outcome = match options.student(pinned, words.first()) {
+    let outcome = match options.choose_student(pinned, words.first()) {
         _ if options.list => listing::print(options.json),
         Ok(student) => run::run(&options, student),
         Err(message) => {

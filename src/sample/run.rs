@@ -20,7 +20,7 @@ type Output = Trace<Box<dyn Write>>;
 
 /// Simulates a scene, and returns the exit status of the program.
 pub fn run(options: &Options, student: Student) -> anyhow::Result<u8> {
-    if let Some(code) = hostile::at_start(student, options.output.as_deref())? {
+    if let Some(code) = hostile::act_at_start(student, options.output.as_deref())? {
         return Ok(code);
     }
     for round in 0..u64::from(options.busy) * 1_000_000 {
@@ -58,7 +58,7 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
     for step in 1..=steps {
         if step == steps / 2 + 1 {
             match hostile::act_midway(world.student)? {
-                MidwayAct::GoOn => {}
+                MidwayAct::Continue => {}
                 MidwayAct::Leave(code) => return Ok(code),
                 MidwayAct::LeaveInsideRecord(code) => {
                     trace.write_raw(&[0; 5])?;

@@ -1,6 +1,6 @@
 //! A folder of its own for every test of the command line, and the program run there with a scrubbed environment.
 use fosssim_oracle::{
-    sample::pin,
+    sample::pinned_mistake,
     scene::{self, Scene},
     sim::{RootSearch, Simulation},
     suite::library,
@@ -23,7 +23,7 @@ pub fn root() -> &'static Path {
 /// Returns a program like a student's: a copy of the sample with a mistake, or a "right" one.
 pub fn submission(mistake: &str) -> Vec<u8> {
     let sample = fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
-    pin::write(&sample, mistake).expect("a place for the mistake")
+    pinned_mistake::write(&sample, mistake).expect("a place for the mistake")
 }
 
 /// A temporary folder; gone at the end of the test.

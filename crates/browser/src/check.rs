@@ -11,8 +11,11 @@ use fosssim_judge::{
 };
 use fosssim_model::scene::{self, Scene};
 use fosssim_report::{
-    check::{Check, SNIFFED_BYTES, StepChoice, WrongSteps, describe_no_verdict, describe_unread, is_wrong, looks_like},
-    page, problems,
+    check::{
+        Check, SNIFFED_BYTES, StepChoice, WrongSteps, describe_no_verdict, describe_unread, detect_file_kind,
+        needs_explanation,
+    },
+    page, scene_problems,
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -43,7 +46,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
     // If bytes can't be read, this is noticed below.
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
-    let looks_like = looks_like(&start);
+    let looks_like = detect_file_kind(&start);
     let options = Options { threads: 1, uses_fair_rules: request.rules.includes_fair(), ..Options::default() };
     let (mut told, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
     let heard = &mut ObserverPair(&mut told, &mut wrong);
@@ -57,7 +60,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     if let Some(why) = fault.get() {
         return Err(describe_unread(outcome, &request.trace, why));
     }
-    let explanations = if is_wrong(outcome) { examined.explain() } else { Vec::new() };
+    let explanations = if needs_explanation(outcome) { examined.explain() } else { Vec::new() };
     let check = Check {
         scene: &request.scene,
         trace: &request.trace,
@@ -72,7 +75,8 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let mut parts = vec![check.json().into_bytes()];
     if request.html {
         let mut again = (!examined.trace.is_whole()).then(|| open(host, request.file, &fault));
-        let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::MAX_NUMBERS);
+        let evidence =
+            examined.gather_evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::MAX_NUMBERS);
         parts.push(page::examined_page(check, &examined, &evidence).into_bytes());
     }
     let value = json!({
@@ -90,6 +94,6 @@ pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String
     };
     match scene::read(name, xml) {
         Ok(loaded) => Ok(loaded.scene),
-        Err(refused) => Err(problems::render_errors(name, xml, &refused)),
+        Err(refused) => Err(scene_problems::render_errors(name, xml, &refused)),
     }
 }

@@ -27,8 +27,8 @@ const STYLE: &str = include_str!("../page/page.css");
 /// suite.
 #[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
-    let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT_PARTS));
-    let worker = lines(&WORKER_PARTS);
+    let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", strip_lines(&SCRIPT_PARTS));
+    let worker = strip_lines(&WORKER_PARTS);
     let style = style() + STYLE;
     let [framed_script, framed_style] = framed_digests();
     let policy = format!(
@@ -54,7 +54,7 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
 
 /// Returns a script without indentation and without comment lines. Except in scenes, no text in a script spans several
 /// lines.
-fn lines(parts: &[&str]) -> String {
+fn strip_lines(parts: &[&str]) -> String {
     let lines = parts.iter().flat_map(|part| part.lines());
     lines
         .filter(|line| !line.trim().is_empty() && !line.trim_start().starts_with("//"))

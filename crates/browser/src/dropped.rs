@@ -43,7 +43,7 @@ pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) 
     let mut bytes = BufReader::with_capacity(PIECE_BYTES, DroppedFile { host, file, offset: 0, fault });
     // If a file cannot be read, this is reported when it is read.
     match bytes.fill_buf() {
-        Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),
+        Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdReader { frames: Frames::Next(bytes), fault }),
         _ => Box::new(bytes),
     }
 }
@@ -68,7 +68,7 @@ impl Read for DroppedFile<'_> {
 }
 
 /// Decompresses a zstd file. If the file is damaged, the copy is at fault, and nothing is known about the trace.
-struct ZstdContent<'a> {
+struct ZstdReader<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
 }
@@ -83,7 +83,7 @@ enum Frames<R: Read> {
     End,
 }
 
-impl Read for ZstdContent<'_> {
+impl Read for ZstdReader<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.frames.read(into).inspect_err(|_| {
             // If the file cannot be read, this has been reported already, and explains more.

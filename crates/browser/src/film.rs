@@ -124,7 +124,7 @@ impl Film {
                 host.progress(step, scene.step_count());
             }
         }
-        let extent = extent.limited_to(&start);
+        let extent = extent.limit_to(&start);
         (Self { scene, positions, steps, extent, painter: None }, stopped)
     }
 
@@ -138,7 +138,7 @@ impl Film {
     }
 
     /// Returns one picture, as the second part of the answer.
-    pub(crate) fn draw_picture(&mut self, asked: &PictureRequest) -> PageAnswer {
+    pub(crate) fn draw_requested_picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
         // The page itself shows the step and the time, so the picture does not.
@@ -201,7 +201,7 @@ impl Film {
     /// Returns the reference's trace. It has the same bytes as the output of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::OnDemand);
-        let kept = TraceRoom(Vec::new());
+        let kept = TraceBuffer(Vec::new());
         let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.step_count() {
             if let Err(error) = simulation.step(&mut recorder) {
@@ -222,9 +222,9 @@ impl Film {
 }
 
 /// The buffer in memory for one trace.
-struct TraceRoom(Vec<u8>);
+struct TraceBuffer(Vec<u8>);
 
-impl Write for TraceRoom {
+impl Write for TraceBuffer {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         if self.0.len() + bytes.len() > MAX_TRACE_BYTES {
             return Err(io::Error::other("too long"));

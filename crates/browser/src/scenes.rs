@@ -10,7 +10,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
-use fosssim_report::check::{SNIFFED_BYTES, looks_like};
+use fosssim_report::check::{SNIFFED_BYTES, detect_file_kind};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
@@ -41,21 +41,21 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
 
 /// Returns the names of the scenes to which a dropped trace may belong, according to its first record. If the file
 /// cannot be a trace, also returns the kind of file that it probably is.
-pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
+pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // If there is an error, its message is in `fault`.
     let _ = open(host, file, &fault).take(MAX_RECORD_BYTES).read_to_end(&mut start);
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
     }
-    let begins = |name: &&str| library::scene(name).is_some_and(|xml| is_beginning(xml, &start));
+    let begins = |name: &&str| library::scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
     let scenes: Vec<_> = library::names().filter(begins).collect();
-    let kind = looks_like(&start[..start.len().min(SNIFFED_BYTES as usize)]);
+    let kind = detect_file_kind(&start[..start.len().min(SNIFFED_BYTES as usize)]);
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 
 /// Returns whether a trace that begins with these bytes may belong to the scene.
-fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
+fn may_begin_trace(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::OnDemand);
     let recorder = Recorder::start(Vec::new(), Layout::for_scene(&loaded.scene), simulation.state());

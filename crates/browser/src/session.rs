@@ -85,7 +85,7 @@ impl PageSession {
                 Ok((json!({ "scene": scene }), vec![trace.to_vec()]))
             }
             PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),
-            PageRequest::Recognize { file } => scenes::beginning(file, host),
+            PageRequest::Recognize { file } => scenes::recognize_scenes(file, host),
             PageRequest::Check(request) => check::answer(&request, xml, host),
             PageRequest::Simulate { scene } => {
                 let (value, film) = film::simulate(&scene, xml.ok_or("the scene is missing")?, host);
@@ -93,16 +93,20 @@ impl PageSession {
                 Ok((value, Vec::new()))
             }
             PageRequest::Trace => Ok((json!({}), vec![self.film.as_ref().ok_or_else(last)?.trace(host)?])),
-            PageRequest::Picture(picture) => self.film.as_mut().ok_or_else(last)?.draw_picture(&picture),
+            PageRequest::Picture(picture) => self.film.as_mut().ok_or_else(last)?.draw_requested_picture(&picture),
             PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.draw_film(&kind, host),
             PageRequest::Detect(request) => detect::answer(&request),
             PageRequest::Suite(request) => {
-                let (value, submission) = DroppedSubmission::begin(&request, rest)?;
+                let (value, submission) = DroppedSubmission::begin_submission(&request, rest)?;
                 self.submission = Some(submission);
                 Ok((value, Vec::new()))
             }
-            PageRequest::Judge(request) => self.submission.as_mut().ok_or("no suite is chosen")?.scene(&request, host),
-            PageRequest::Grade { name } => self.submission.as_ref().ok_or("no suite is chosen")?.end(&name),
+            PageRequest::Judge(request) => {
+                self.submission.as_mut().ok_or("no suite is chosen")?.judge_scene(&request, host)
+            }
+            PageRequest::Grade { name } => {
+                self.submission.as_ref().ok_or("no suite is chosen")?.finish_submission(&name)
+            }
         }
     }
 }

@@ -52,7 +52,7 @@ pub(crate) struct DroppedSubmission {
 
 impl DroppedSubmission {
     /// Reads the suite. Returns its groups, and the names of their scenes, in order.
-    pub(crate) fn begin(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
+    pub(crate) fn begin_submission(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
         let name = asked.suite.clone().unwrap_or_else(plan::default_name);
         let (text, dropped) = match (&asked.suite, parts.split_first()) {
             (None, Some((text, dropped))) => {
@@ -64,7 +64,7 @@ impl DroppedSubmission {
                 &[][..],
             ),
         };
-        let mut files = |pattern: &str| matching(pattern, &asked.scenes, dropped);
+        let mut files = |pattern: &str| find_matching_scenes(pattern, &asked.scenes, dropped);
         let plan = plan::load_with(text, &mut files).map_err(|error| {
             error.problems.iter().map(|(at, words)| format!("suite.toml:{at}: {words}\n")).collect::<String>()
         })?;
@@ -79,7 +79,7 @@ impl DroppedSubmission {
     }
 
     /// Judges the trace of one scene.
-    pub(crate) fn scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
+    pub(crate) fn judge_scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
         let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
         let fault = ReadFault::new();
         let trace: Box<dyn Read + Send> = match asked.has_trace {
@@ -108,7 +108,7 @@ impl DroppedSubmission {
 
     /// Computes the grade from the results of all scenes. The second part of the answer is what `grade --traces
     /// --format json` prints.
-    pub(crate) fn end(&self, name: &str) -> PageAnswer {
+    pub(crate) fn finish_submission(&self, name: &str) -> PageAnswer {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
@@ -127,7 +127,7 @@ impl DroppedSubmission {
             let words = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
             json!({ "words": words, "scenes": names })
         };
-        let causes: Vec<Value> = grade::by_cause(&graded)
+        let causes: Vec<Value> = grade::group_by_cause(&graded)
             .iter()
             .filter(|scenes| !scenes[0].corrected_explanations.is_empty() || scenes.len() > 1)
             .map(cause)
@@ -146,7 +146,7 @@ impl DroppedSubmission {
 }
 
 /// Returns the dropped scenes that a pattern matches. It is compared with their paths relative to the suite.
-fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<MatchingScenes, String> {
+fn find_matching_scenes(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
     let found: MatchingScenes = names
         .iter()

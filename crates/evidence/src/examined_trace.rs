@@ -67,7 +67,7 @@ impl ExaminedTrace<'_> {
     /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if that can be
     /// read again, otherwise the kept part.
     #[must_use]
-    pub fn evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
+    pub fn gather_evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));
         let gathered = |trace: &mut dyn Read| gather(self.scene, trace, &self.rulings, fair, &focus, budget);
         match again {

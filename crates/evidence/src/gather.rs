@@ -122,8 +122,8 @@ pub fn gather(
     let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let center = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
-    let close = close_steps(focus, first_wrong, layout);
-    let mut gathering = Gathering::new(scene, Window::for_focus(center, layout, budget));
+    let close = find_detailed_steps(focus, first_wrong, layout);
+    let mut gathering = EvidenceBuilder::new(scene, Window::for_focus(center, layout, budget));
     let mut reader = LenientReader::new(trace, layout).with_limit(record_memory(scene));
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
     if reader.next(&mut end).is_err() {
@@ -137,16 +137,16 @@ pub fn gather(
             break;
         }
         gathering.keep_states(step, &mid, &end);
-        let wanted = close.contains(&step).then(|| wanted_calls(focus, step));
+        let wanted = close.contains(&step).then(|| find_wanted_calls(focus, step));
         let Some(count) = gathering.step(step, &before, (&mid, &end), wanted.as_deref()) else { break };
         let ruling = rulings.get(step as usize - 1);
         let is_wrong = ruling.is_some_and(wrong);
         seen_wrong |= is_wrong;
         let class = match ruling {
             None => StepClass::Unknown,
-            Some(ruling) if ruling.damaged => StepClass::Unknown,
+            Some(ruling) if ruling.is_damaged => StepClass::Unknown,
             Some(_) if is_wrong => StepClass::Wrong,
-            Some(_) if seen_wrong && gathering.is_apart(&end.state) => StepClass::Inherited,
+            Some(_) if seen_wrong && gathering.differs_from_free_run(&end.state) => StepClass::Inherited,
             Some(_) => StepClass::Right,
         };
         gathering.keep_step(class, &count, &end);
@@ -158,22 +158,22 @@ pub fn gather(
 }
 
 /// Returns the calls of a step that are shown in detail.
-fn wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
+fn find_wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     let of_step = focus.iter().filter(|focus| focus.step == step);
     of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
 }
 
 /// Collects the evidence, with the reference's own run and its steps from the trace's states.
-struct Gathering<'a> {
+struct EvidenceBuilder<'a> {
     scene: &'a Scene,
-    free: Simulation,
-    free_goes_on: bool,
+    free_run: Simulation,
+    is_free_run_going: bool,
     own: Simulation,
     work: Budget<'a>,
     evidence: Evidence,
 }
 
-impl<'a> Gathering<'a> {
+impl<'a> EvidenceBuilder<'a> {
     fn new(scene: &'a Scene, window: Window) -> Self {
         let simulation = || Simulation::new(scene, RootSearch::OnDemand);
         let evidence = Evidence {
@@ -185,12 +185,12 @@ impl<'a> Gathering<'a> {
             inspected: Vec::new(),
         };
         let work = Budget::new(scene, false);
-        Self { scene, free: simulation(), free_goes_on: true, own: simulation(), work, evidence }
+        Self { scene, free_run: simulation(), is_free_run_going: true, own: simulation(), work, evidence }
     }
 
     fn begin(&mut self, first: &State) {
         if self.evidence.window.holds(0, false) {
-            self.evidence.reference.push(self.free.state());
+            self.evidence.reference.push(self.free_run.state());
             self.evidence.submission.push(first);
         }
     }
@@ -203,13 +203,13 @@ impl<'a> Gathering<'a> {
     /// Advances the reference's own run by one step.
     fn run_freely(&mut self, step: u32) {
         let mut midway = MidState::default();
-        self.free_goes_on = self.free_goes_on && self.free.step(&mut midway).is_ok();
-        if self.free_goes_on {
+        self.is_free_run_going = self.is_free_run_going && self.free_run.step(&mut midway).is_ok();
+        if self.is_free_run_going {
             if let (Some(state), true) = (&midway.state, self.holds(step, true)) {
                 self.evidence.reference.push(state);
             }
             if self.holds(step, false) {
-                self.evidence.reference.push(self.free.state());
+                self.evidence.reference.push(self.free_run.state());
             }
         }
     }
@@ -248,32 +248,32 @@ impl<'a> Gathering<'a> {
         // The inspector must observe first: it keeps the expected mid record, and then makes the step continue with the
         // trace's.
         if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
-            count.apart = distances(expected, mid);
+            count.deviations = distances(expected, mid);
         }
         self.evidence.inspected.push(inspector.finish());
         done.then_some(count)
     }
 
     /// Returns whether the state of the reference's own run differs from `end`.
-    fn is_apart(&self, end: &State) -> bool {
-        self.free_goes_on && max_distance(&self.free.state().positions, &end.positions) > MOTION_TOLERANCE
+    fn differs_from_free_run(&self, end: &State) -> bool {
+        self.is_free_run_going && max_distance(&self.free_run.state().positions, &end.positions) > MOTION_TOLERANCE
     }
 
     fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
         let [position, velocity] = distances(self.own.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
-            position: max_with_nan(count.apart[0], position),
-            velocity: max_with_nan(count.apart[1], velocity),
+            position: max_with_nan(count.deviations[0], position),
+            velocity: max_with_nan(count.deviations[1], velocity),
             expected_passes: count.passes,
-            actual_passes: count.passes_of(end.logged_polynomials),
+            actual_passes: count.count_passes(end.logged_polynomials),
         });
     }
 }
 
 /// Returns the steps shown in detail: those of findings, and those around the first wrong step; if there are too many,
 /// the most important ones.
-fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
+fn find_detailed_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
@@ -319,12 +319,12 @@ struct PassCount<'a> {
     passes: u32,
     polynomials: usize,
     /// The distances of the trace's mid record from the expected one, in positions and velocities.
-    apart: [f64; 2],
+    deviations: [f64; 2],
 }
 
 impl PassCount<'_> {
     /// Returns the number of passes that log `logged` polynomials. All passes of a step log the same number.
-    fn passes_of(&self, logged: usize) -> Option<u32> {
+    fn count_passes(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {
             return (logged == 0).then_some(self.passes);
@@ -351,7 +351,7 @@ impl Observer for PassCount<'_> {
 impl StepController for PassCount<'_> {
     fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
-            self.apart = distances(state, mid);
+            self.deviations = distances(state, mid);
         }
         continue_from(self.mid, state)
     }

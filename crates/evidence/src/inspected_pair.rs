@@ -14,7 +14,7 @@ pub struct InspectedPair {
     /// The end state of the step.
     pub end: State,
     /// The error, if the step has no result.
-    pub failed: Option<StepError>,
+    pub error: Option<StepError>,
 }
 
 /// Inspects all detection calls of a pair in a step that starts from `before`. The step continues with the trace's
@@ -40,5 +40,5 @@ pub fn inspect(
     let mut step = watch.finish();
     // An error after the pair's calls does not matter here.
     step.calls.retain(|call| call.pair == pair);
-    InspectedPair { step, end: simulation.state().clone(), failed }
+    InspectedPair { step, end: simulation.state().clone(), error: failed }
 }

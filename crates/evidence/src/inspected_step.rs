@@ -1,5 +1,5 @@
 //! Inspects one step in detail: every detection pass, contact and zone, and the calls of findings.
-use crate::matching::{are_different, match_polynomials};
+use crate::polynomial_matching::{are_different, match_polynomials};
 use fosssim_judge::study::{EndlessSearch, Study};
 use fosssim_model::{
     scene::Scene,
@@ -31,11 +31,11 @@ pub struct InspectedPass {
     /// The collisions that the pass finds.
     pub hits: Vec<Impulse>,
     /// The first pairs whose logged polynomials differ by more than a factor.
-    pub differing: Vec<Pair>,
+    pub differing_pairs: Vec<Pair>,
     /// The first pairs without logged polynomials.
-    pub missing: Vec<Pair>,
+    pub missing_pairs: Vec<Pair>,
     /// The first pairs whose polynomials are logged twice.
-    pub repeated: Vec<Pair>,
+    pub repeated_pairs: Vec<Pair>,
     /// Whether the trace's polynomials of this pass are known.
     pub is_logged: bool,
 }
@@ -94,7 +94,7 @@ pub struct InspectedStep {
     /// The number of polynomials that the trace has logged.
     pub actual_polynomials: usize,
     /// The number of logged polynomials without a call of the reference, or `None` if unknown.
-    pub surplus: Option<usize>,
+    pub surplus_polynomials: Option<usize>,
     /// The responses of the reference.
     pub expected_contacts: Vec<Impulse>,
     /// The impulse list of the trace.
@@ -117,7 +117,7 @@ pub(crate) enum WantedCalls {
 }
 
 /// A call of the reference, kept in case the trace's list must be matched.
-struct AskedCall {
+struct ReferenceCall {
     pass: Pass,
     /// The number of the pass in the step.
     number: usize,
@@ -133,13 +133,13 @@ pub(crate) struct Inspector<'a> {
     /// The trace's mid record, with which the step continues.
     mid: Option<&'a State>,
     log: Option<&'a PolynomialLog>,
-    wanted: &'a [(WantedCalls, Pair)],
+    wanted_calls: &'a [(WantedCalls, Pair)],
     pass: Option<Pass>,
     /// The calls and their polynomials, at most [`MAX_CALLS`].
-    asked: Vec<AskedCall>,
-    right: PolynomialLog,
+    reference_calls: Vec<ReferenceCall>,
+    right_polynomials: PolynomialLog,
     /// The number in the step of each inspected call, and the index of its first polynomial.
-    places: Vec<(usize, usize)>,
+    polynomial_places: Vec<(usize, usize)>,
     /// The number of calls so far.
     calls: usize,
     pub(crate) step: InspectedStep,
@@ -159,10 +159,21 @@ impl<'a> Inspector<'a> {
         // A call whose polynomials were not kept must not look as if they were missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
-        Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }
+        Self {
+            scene,
+            mid,
+            log,
+            wanted_calls: wanted,
+            pass: None,
+            reference_calls: asked,
+            right_polynomials: right,
+            polynomial_places: Vec::new(),
+            calls: 0,
+            step,
+        }
     }
 
-    fn most_passes(&self) -> usize {
+    fn max_passes(&self) -> usize {
         (MAX_POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, MAX_PASSES)
     }
 
@@ -170,11 +181,11 @@ impl<'a> Inspector<'a> {
     pub(crate) fn finish(mut self) -> InspectedStep {
         let (expected, actual) = (self.step.expected_polynomials, self.step.actual_polynomials);
         if expected == actual {
-            self.step.surplus = Some(0);
-            for (call, &(_, first)) in self.step.calls.iter_mut().zip(&self.places) {
-                call.logged = by_order(self.log, expected, first, call.polynomials);
+            self.step.surplus_polynomials = Some(0);
+            for (call, &(_, first)) in self.step.calls.iter_mut().zip(&self.polynomial_places) {
+                call.logged = find_log_by_order(self.log, expected, first, call.polynomials);
             }
-        } else if self.calls == self.asked.len() {
+        } else if self.calls == self.reference_calls.len() {
             match self.log {
                 Some(log) => self.assign(log),
                 // An empty list can be assigned without any doubt.
@@ -182,21 +193,21 @@ impl<'a> Inspector<'a> {
                 None => {}
             }
         }
-        self.show_more();
+        self.inspect_more_calls();
         self.step
     }
 
     /// Assigns the polynomials to calls if the trace has a different number of polynomials than the reference.
     fn assign(&mut self, log: &PolynomialLog) {
-        let Some(found) = match_polynomials(&self.right, log) else { return };
+        let Some(found) = match_polynomials(&self.right_polynomials, log) else { return };
         let mut is_claimed = vec![false; log.len()];
         found.iter().flatten().for_each(|&place| is_claimed[place] = true);
         for pass in &mut self.step.passes {
-            pass.differing.clear();
+            pass.differing_pairs.clear();
             pass.is_logged = true;
         }
-        let mut fates: Vec<CallLog> = Vec::with_capacity(self.asked.len());
-        for asked in &self.asked {
+        let mut fates: Vec<CallLog> = Vec::with_capacity(self.reference_calls.len());
+        for asked in &self.reference_calls {
             let of_call = &found[asked.first..asked.first + asked.count];
             let fate = if of_call.iter().all(Option::is_none) {
                 CallLog::Nothing
@@ -209,22 +220,22 @@ impl<'a> Inspector<'a> {
                 let is_wrong = |list: &[Vec<f64>]| {
                     list.iter()
                         .zip(asked.first..)
-                        .any(|(own, place)| own.is_empty() || are_different(own, self.right.get(place)))
+                        .any(|(own, place)| own.is_empty() || are_different(own, self.right_polynomials.get(place)))
                 };
                 match &fate {
                     _ if asked.count == 0 => {}
-                    CallLog::Nothing => keep(&mut pass.missing, asked.pair),
-                    CallLog::These(list) if is_wrong(list) => keep(&mut pass.differing, asked.pair),
+                    CallLog::Nothing => keep_pair(&mut pass.missing_pairs, asked.pair),
+                    CallLog::These(list) if is_wrong(list) => keep_pair(&mut pass.differing_pairs, asked.pair),
                     _ => {}
                 }
             }
             fates.push(fate);
         }
-        for (call, &(number, _)) in self.step.calls.iter_mut().zip(&self.places) {
+        for (call, &(number, _)) in self.step.calls.iter_mut().zip(&self.polynomial_places) {
             call.logged = fates[number].clone();
         }
         let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
-        self.step.surplus = Some(surplus);
+        self.step.surplus_polynomials = Some(surplus);
         // A polynomial without a call may belong to a call that was made twice. It then follows or precedes the
         // polynomials of its pass.
         let mut place = 0;
@@ -233,21 +244,23 @@ impl<'a> Inspector<'a> {
                 place += 1;
                 continue;
             }
-            let again = |asked: &&AskedCall| {
+            let again = |asked: &&ReferenceCall| {
                 asked.count > 0
                     && place + asked.count <= log.len()
                     && (0..asked.count).all(|k| {
-                        !is_claimed[place + k] && !are_different(log.get(place + k), self.right.get(asked.first + k))
+                        !is_claimed[place + k]
+                            && !are_different(log.get(place + k), self.right_polynomials.get(asked.first + k))
                     })
             };
             let before =
                 found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < place)).map(|(own, _)| own).max();
-            let number = before.and_then(|own| self.asked.iter().find(|asked| asked.first + asked.count > own));
+            let number =
+                before.and_then(|own| self.reference_calls.iter().find(|asked| asked.first + asked.count > own));
             let number = number.map_or(0, |asked| asked.number);
-            match self.asked.iter().filter(|asked| asked.number == number).find(again) {
+            match self.reference_calls.iter().filter(|asked| asked.number == number).find(again) {
                 Some(asked) => {
                     if let Some(pass) = self.step.passes.get_mut(number) {
-                        keep(&mut pass.repeated, asked.pair);
+                        keep_pair(&mut pass.repeated_pairs, asked.pair);
                     }
                     place += asked.count;
                     surplus -= asked.count;
@@ -258,26 +271,31 @@ impl<'a> Inspector<'a> {
     }
 
     /// Inspects wrong or missing calls without a finding.
-    fn show_more(&mut self) {
-        let Some(pass) =
-            self.step.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
+    fn inspect_more_calls(&mut self) {
+        let Some(pass) = self
+            .step
+            .passes
+            .iter()
+            .position(|pass| !(pass.differing_pairs.is_empty() && pass.missing_pairs.is_empty()))
         else {
             return;
         };
         let up = &self.step.passes[pass];
-        let wrong: Vec<Pair> = [up.missing.first(), up.differing.first()].into_iter().flatten().copied().collect();
+        let wrong: Vec<Pair> =
+            [up.missing_pairs.first(), up.differing_pairs.first()].into_iter().flatten().copied().collect();
         for pair in wrong.into_iter().take(MAX_SHOWN_CALLS) {
             let is_shown = |call: &InspectedCall| call.pair == pair && call.pass == self.step.passes[pass].pass;
             if self.step.calls.len() >= MAX_SHOWN_CALLS || self.step.calls.iter().any(is_shown) {
                 continue;
             }
-            let Some(asked) = self.asked.iter().find(|asked| asked.number == pass && asked.pair == pair) else {
+            let Some(asked) = self.reference_calls.iter().find(|asked| asked.number == pass && asked.pair == pair)
+            else {
                 continue;
             };
-            let logged = if self.step.passes[pass].missing.contains(&pair) {
+            let logged = if self.step.passes[pass].missing_pairs.contains(&pair) {
                 CallLog::Nothing
             } else {
-                by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
+                find_log_by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
             };
             let (pass, polynomials) = (asked.pass, asked.count);
             self.step.calls.push(InspectedCall {
@@ -292,7 +310,7 @@ impl<'a> Inspector<'a> {
 }
 
 /// Returns the log of a call by its position in the list; unknown if the list's length differs from the reference's.
-fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
+fn find_log_by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
     match log {
         Some(log) if log.len() == expected => {
             CallLog::These((first..first + count).map(|place| log.get(place).to_vec()).collect())
@@ -301,7 +319,7 @@ fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: u
     }
 }
 
-fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
+fn keep_pair(pairs: &mut Vec<Pair>, pair: Pair) {
     if pairs.len() < MAX_PAIRS {
         pairs.push(pair);
     }
@@ -328,15 +346,15 @@ impl Observer for Inspector<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = Some(pass);
         self.step.expected_passes += 1;
-        if self.step.passes.len() < self.most_passes() {
+        if self.step.passes.len() < self.max_passes() {
             self.step.passes.push(InspectedPass {
                 pass,
                 q_end: Vec::new(),
                 calls: 0,
                 hits: Vec::new(),
-                differing: Vec::new(),
-                missing: Vec::new(),
-                repeated: Vec::new(),
+                differing_pairs: Vec::new(),
+                missing_pairs: Vec::new(),
+                repeated_pairs: Vec::new(),
                 is_logged: self.log.is_some(),
             });
         }
@@ -350,7 +368,7 @@ impl Observer for Inspector<'_> {
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
         let motion = || PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let is_hit = matches!(decision, Decision::Hit { .. });
-        let wanted = self.wanted.iter().any(|(which, one)| {
+        let wanted = self.wanted_calls.iter().any(|(which, one)| {
             *one == pair
                 && match which {
                     WantedCalls::Hits => is_hit,
@@ -362,12 +380,12 @@ impl Observer for Inspector<'_> {
             let study = Study::for_motion(&motion());
             // Only at the end of the step is it known whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
-            self.places.push((self.calls - 1, first));
+            self.polynomial_places.push((self.calls - 1, first));
         }
-        if self.asked.len() < MAX_CALLS {
+        if self.reference_calls.len() < MAX_CALLS {
             let number = self.step.expected_passes - 1;
-            self.asked.push(AskedCall { pass, number, pair, motion: motion(), first, count });
-            detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));
+            self.reference_calls.push(ReferenceCall { pass, number, pair, motion: motion(), first, count });
+            detection.polynomials.iter().for_each(|polynomial| self.right_polynomials.push(polynomial.coefficients()));
         }
         let logged = self.log.filter(|log| first + count <= log.len());
         let differs = logged.is_some_and(|log| {
@@ -383,7 +401,7 @@ impl Observer for Inspector<'_> {
                 up.hits.push(Impulse { pair, normal, time });
             }
             if differs {
-                keep(&mut up.differing, pair);
+                keep_pair(&mut up.differing_pairs, pair);
             }
         }
     }

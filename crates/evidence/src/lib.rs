@@ -35,7 +35,7 @@ mod examined_trace;
 mod gather;
 mod inspected_pair;
 mod inspected_step;
-mod matching;
+mod polynomial_matching;
 mod rulings;
 #[cfg(test)]
 mod tests;

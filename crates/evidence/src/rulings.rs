@@ -12,7 +12,7 @@ pub struct StepRuling {
     /// Whether the fair rules find a fault in the step; `false` if the fair rules did not judge the step.
     pub wrong_by_fair: bool,
     /// Whether the step's records, or earlier ones, are damaged, so that its numbers prove nothing.
-    pub damaged: bool,
+    pub is_damaged: bool,
 }
 
 /// An observer that keeps the rulings on all steps.
@@ -27,7 +27,7 @@ impl StepRulings {
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
         // All records after a damaged one count as damaged.
         let sound = outcome.steps_judged.saturating_sub(outcome.damaged_steps) as usize;
-        self.steps.iter_mut().skip(sound).for_each(|step| step.damaged = true);
+        self.steps.iter_mut().skip(sound).for_each(|step| step.is_damaged = true);
         self.steps
     }
 }

@@ -75,7 +75,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
     let CallLog::These(logged) = &call.logged else { panic!("{call:?}") };
     assert_ne!(study.curves[number].logged.coefficients(), &logged[number][..]);
-    assert!(close.passes[0].differing.contains(&place.pair));
+    assert!(close.passes[0].differing_pairs.contains(&place.pair));
 }
 
 /// A long motion is shown around its first wrong step, and every record that is shown is exact.
@@ -120,22 +120,22 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let close = |id: &str| judged(&scene, &of_mistake(&scene, id)).1.inspected.remove(0);
     let right = close("pe-linear-one-ab").passes.remove(0);
-    assert!(right.missing.is_empty() && right.repeated.is_empty() && !right.differing.is_empty());
+    assert!(right.missing_pairs.is_empty() && right.repeated_pairs.is_empty() && !right.differing_pairs.is_empty());
     let pruned = close("pairs-pruned");
     let pass = &pruned.passes[0];
-    assert!(pass.is_logged && pruned.surplus == Some(0));
-    assert!(pass.differing.is_empty() && pass.repeated.is_empty(), "{pass:?}");
+    assert!(pass.is_logged && pruned.surplus_polynomials == Some(0));
+    assert!(pass.differing_pairs.is_empty() && pass.repeated_pairs.is_empty(), "{pass:?}");
     let polynomials = |pair: &Pair| if pair.kind == PairKind::ParticleEdge { 4 } else { 2 };
-    let missing: usize = pass.missing.iter().map(polynomials).sum();
+    let missing: usize = pass.missing_pairs.iter().map(polynomials).sum();
     assert_eq!(missing, pruned.expected_polynomials - pruned.actual_polynomials);
     // One of them is looked at, although no finding names it.
-    assert!(pruned.calls.iter().any(|call| call.logged == CallLog::Nothing && pass.missing.contains(&call.pair)));
+    assert!(pruned.calls.iter().any(|call| call.logged == CallLog::Nothing && pass.missing_pairs.contains(&call.pair)));
     let twice = close("pairs-both-orders");
     let pass = &twice.passes[0];
-    assert!(pass.differing.is_empty() && pass.missing.is_empty(), "{pass:?}");
+    assert!(pass.differing_pairs.is_empty() && pass.missing_pairs.is_empty(), "{pass:?}");
     let particles = scene.particles.len();
-    assert_eq!(pass.repeated.len(), particles * (particles - 1) / 2, "{pass:?}");
-    assert_eq!(twice.surplus, Some(twice.actual_polynomials - twice.expected_polynomials));
+    assert_eq!(pass.repeated_pairs.len(), particles * (particles - 1) / 2, "{pass:?}");
+    assert_eq!(twice.surplus_polynomials, Some(twice.actual_polynomials - twice.expected_polynomials));
 }
 
 /// A pair is looked at from the trace's own mid record, too.
@@ -156,5 +156,5 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let seen = inspect(&scene, step, &before, Some((&mid, &PolynomialLog::default())), pair);
     assert_eq!(seen.step.calls.len(), close.expected_passes);
     assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == CallLog::Nothing));
-    assert_eq!((Some(&seen.end), seen.failed), (close.expected_end.as_ref(), None));
+    assert_eq!((Some(&seen.end), seen.error), (close.expected_end.as_ref(), None));
 }

@@ -53,7 +53,7 @@ pub enum FileError {
 
 impl FileError {
     /// Converts the operating system's error after a file could not be opened.
-    pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
+    pub(crate) fn from_open_error(name: String, error: io::Error) -> Self {
         match error.raw_os_error() {
             Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
             Some(libc::ELOOP) => Self::NotRegular { name, what: "a symbolic link" },

@@ -66,18 +66,18 @@ impl Folder {
     ///
     /// # Errors
     /// Fails if the folder does not exist, or access is denied.
-    pub fn to_write(path: &Path) -> io::Result<Self> {
+    pub fn open_to_write(path: &Path) -> io::Result<Self> {
         let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
         Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
     }
 
-    /// Opens a folder as [`Folder::to_write`] does. Missing folders on the path are created.
+    /// Opens a folder as [`Folder::open_to_write`] does. Missing folders on the path are created.
     ///
     /// # Errors
     /// Fails if a folder cannot be created or opened.
-    pub fn make(path: &Path) -> io::Result<Self> {
+    pub fn create(path: &Path) -> io::Result<Self> {
         std::fs::create_dir_all(path)?;
-        Self::to_write(path)
+        Self::open_to_write(path)
     }
 
     /// Returns the path by which the folder was opened.
@@ -138,7 +138,7 @@ impl Folder {
     ///
     /// # Errors
     /// Fails if the subfolder cannot be created, or if an entry of another kind has its name.
-    pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
+    pub fn create_folder(&self, name: &OsStr) -> io::Result<Self> {
         match mkdirat(&*self.fd, check_single_component(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
             Ok(()) | Err(Errno::EXIST) => self.open_folder(name),
             Err(error) => Err(error.into()),
@@ -153,7 +153,7 @@ impl Folder {
     /// `max_bytes`.
     pub fn open_file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
         let shown = || escape(name);
-        let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
+        let file = self.open_beneath(name).map_err(|error| FileError::from_open_error(shown(), error))?;
         let length = require_regular_file(&file, shown)?.len();
         if length > max_bytes {
             return Err(FileError::TooLong { name: shown(), length, limit: max_bytes });
@@ -197,7 +197,7 @@ impl Folder {
     pub fn own_file(&self, name: &str) -> Result<File, FileError> {
         let flags = OFlags::RDWR | OFlags::CREATE | SAFE_FLAGS;
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
-        let file = opened.map_err(|error| FileError::not_opened(name.to_owned(), error.into()))?;
+        let file = opened.map_err(|error| FileError::from_open_error(name.to_owned(), error.into()))?;
         let file = File::from(file);
         require_regular_file(&file, || name.to_owned())?;
         Ok(file)
@@ -239,10 +239,10 @@ impl Folder {
     /// Opens the folder at a path of names, in order to read it or to write into it.
     pub(crate) fn open_path(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
-            let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
+            let (above, Some(last)) = self.split_path(path)? else { return Ok(self.clone()) };
             Ok(self.inner(open_component(above.as_fd(), last)?, path.as_os_str()))
         };
-        open().map_err(|error| FileError::not_opened(escape(path.as_os_str()), error))
+        open().map_err(|error| FileError::from_open_error(escape(path.as_os_str()), error))
     }
 
     fn inner(&self, fd: OwnedFd, name: &OsStr) -> Self {
@@ -257,12 +257,12 @@ impl Folder {
 
     /// Returns the folder that contains the last name of a path, and this last name.
     fn split_parent<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
-        let (folder, last) = self.names_of(path)?;
+        let (folder, last) = self.split_path(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
     /// Returns the same parts as [`Folder::split_parent`]. If the path has no last name, it is `None`.
-    fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
+    fn split_path<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
             match component {
@@ -313,7 +313,7 @@ pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
     let shown = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | no_link).open(path);
-    let file = file.map_err(|error| FileError::not_opened(shown(), error))?;
+    let file = file.map_err(|error| FileError::from_open_error(shown(), error))?;
     let length = require_regular_file(&file, shown)?.len();
     Ok((file, length))
 }

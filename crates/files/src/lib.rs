@@ -21,13 +21,13 @@
 #![forbid(unsafe_code)]
 
 mod error;
+mod file_place;
 mod folder;
-mod place;
 mod replacement;
 
 pub use error::FileError;
+pub use file_place::FilePlace;
 pub use folder::{Folder, FolderEntry, open_file};
-pub use place::Place;
 pub use replacement::{Replacement, UNFINISHED_PREFIX};
 
 use std::{
@@ -122,7 +122,7 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
 }
 
 /// The maximum time for which a pipe may have no writer.
-const PIPE_PATIENCE: Duration = Duration::from_secs(5);
+const PIPE_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Returns a reader that waits until a pipe's writer writes. If the pipe has no writer, it does not wait forever.
 ///
@@ -132,13 +132,13 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));
     }
-    let mut pipe = PatientPipe(file);
+    let mut pipe = TimeoutPipe(file);
     let begun = Instant::now();
     let mut first = [0; 1];
     loop {
         match pipe.0.read(&mut first) {
             // If a pipe has no writer, reading looks like the end of a file.
-            Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
+            Ok(0) if begun.elapsed() < PIPE_TIMEOUT => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
                 let text = "nothing wrote to the pipe for five seconds";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text));
@@ -152,9 +152,9 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
 }
 
 /// A pipe that is opened without waiting, and has a writer.
-struct PatientPipe(File);
+struct TimeoutPipe(File);
 
-impl Read for PatientPipe {
+impl Read for TimeoutPipe {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         loop {
             match self.0.read(buffer) {

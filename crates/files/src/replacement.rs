@@ -28,9 +28,9 @@ const MAX_TRIES: u32 = 100;
 pub struct Replacement {
     folder: Folder,
     file: File,
-    unfinished: OsString,
+    unfinished_name: OsString,
     name: OsString,
-    finished: bool,
+    is_finished: bool,
 }
 
 impl Replacement {
@@ -44,7 +44,13 @@ impl Replacement {
             let unfinished = OsString::from(format!("{UNFINISHED_PREFIX}{:x}-{count:x}-{now:x}", process::id()));
             match openat(&folder, &unfinished, flags, Mode::from_raw_mode(mode.unwrap_or(0o666))) {
                 Ok(fd) => {
-                    let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
+                    let made = Self {
+                        folder,
+                        file: fd.into(),
+                        unfinished_name: unfinished,
+                        name: name.to_owned(),
+                        is_finished: false,
+                    };
                     if let Some(mode) = mode {
                         // The process's mask limits the permission bits of a new file. If the file replaces another
                         // one, it must have the same bits.
@@ -65,7 +71,7 @@ impl Replacement {
     /// Returns the path of the unfinished file. It begins with the path by which the folder was opened.
     #[must_use]
     pub fn unfinished_path(&self) -> PathBuf {
-        self.folder.given_path().join(&self.unfinished)
+        self.folder.given_path().join(&self.unfinished_name)
     }
 
     /// Returns the path that the file has when it is finished.
@@ -81,8 +87,8 @@ impl Replacement {
     /// Fails if the file cannot be renamed. An existing file with that name is then unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
-        renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;
-        self.finished = true;
+        renameat(&self.folder, &self.unfinished_name, &self.folder, &self.name)?;
+        self.is_finished = true;
         Ok(())
     }
 
@@ -120,9 +126,9 @@ impl Folder {
 
 impl Drop for Replacement {
     fn drop(&mut self) {
-        if !self.finished {
+        if !self.is_finished {
             // If the file cannot be removed, a hidden file remains, which does no harm.
-            let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
+            let _ = unlinkat(&self.folder, &self.unfinished_name, AtFlags::empty());
         }
     }
 }

@@ -2,7 +2,7 @@
 //! stored under the digest of its contents. Its name is stored with the result, so the trace itself need not be stored.
 use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
-use fosssim_files::Place;
+use fosssim_files::FilePlace;
 use fosssim_judge::{Outcome, Rules};
 use fosssim_mistakes::{diagnose::Explanation, together::disclosure::limit_explanations};
 use fosssim_model::scene::Scene;
@@ -44,7 +44,7 @@ pub type DrawCard<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 #[derive(Clone, Copy)]
 pub struct Cards<'a> {
     /// The folder in which cards are stored. It is created when it is needed.
-    pub folder: &'a Place,
+    pub folder: &'a FilePlace,
     /// The function that draws a card.
     pub draw: &'a DrawCard<'a>,
     /// Whether cards for students are drawn as well.
@@ -91,7 +91,7 @@ impl Cards<'_> {
 /// # Errors
 ///
 /// Fails if the card can't be written.
-pub fn store_card_file(folder: &Place, card: &str) -> io::Result<String> {
+pub fn store_card_file(folder: &FilePlace, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
     let path = card_location(folder, &name);
     if !path.is_file() {
@@ -103,7 +103,7 @@ pub fn store_card_file(folder: &Place, card: &str) -> io::Result<String> {
 
 /// Reads a stored card from a folder; `None` if there is none, or if it was changed.
 #[must_use]
-pub fn read_card(folder: &Place, name: &str) -> Option<String> {
+pub fn read_card(folder: &FilePlace, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
     let (packed, _) = is_name.then(|| card_location(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
@@ -112,7 +112,7 @@ pub fn read_card(folder: &Place, name: &str) -> Option<String> {
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 
-fn card_location(folder: &Place, name: &str) -> Place {
+fn card_location(folder: &FilePlace, name: &str) -> FilePlace {
     folder.join(format!("{name}.zst"))
 }
 
@@ -153,7 +153,7 @@ mod tests {
         let (scene, outcome, result) = wrong();
         let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");
-        let cards = Place::new(folder.path(), "cards");
+        let cards = FilePlace::new(folder.path(), "cards");
         let keep = |text: &'static str| {
             let draw = move |_: &JudgedTrace<'_>| (!text.is_empty()).then(|| text.to_owned());
             let cards = Cards { folder: &cards, draw: &draw, for_students: false };
@@ -185,7 +185,7 @@ mod tests {
         let (scene, outcome, result) = wrong();
         let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");
-        let place = Place::new(folder.path(), "cards");
+        let place = FilePlace::new(folder.path(), "cards");
         let draw = |judged: &JudgedTrace<'_>| (judged.hints > Hints::None).then(|| format!("{:?}", judged.hints));
         for (for_students, students, expected) in [
             (false, Hints::Full, Some("Full")),

@@ -14,7 +14,7 @@ use super::{
     verdict::Verdict,
 };
 use fosssim_evidence::StepRulings;
-use fosssim_files::Place;
+use fosssim_files::FilePlace;
 use fosssim_judge::{
     Outcome, Rules,
     kept_trace::{KeptTrace, MAX_KEPT_BYTES},
@@ -60,9 +60,9 @@ pub struct Runner<'a> {
     /// The switch that stops all runs.
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader failed. It is created when it is needed.
-    pub fault_folder: &'a Place,
+    pub fault_folder: &'a FilePlace,
     /// The file in which a trace is saved if it is not accepted; `None` if this was not requested.
-    pub trace_location: Option<&'a Place>,
+    pub trace_location: Option<&'a FilePlace>,
     /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
     pub cards: Option<Cards<'a>>,
     /// The sums of the processor times of all runs, for `--timings`.

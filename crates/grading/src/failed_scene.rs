@@ -5,7 +5,7 @@ use super::{
     result::{Activity, Failure, SavedTrace, SceneResult},
     task::SceneTask,
 };
-use fosssim_files::Place;
+use fosssim_files::FilePlace;
 use std::{
     io,
     path::{Path, PathBuf},
@@ -14,7 +14,7 @@ use std::{
 /// Returns the result of a scene on which the grader failed, with the beginning of its trace.
 pub(super) fn fault_result(
     task: &SceneTask,
-    folder: &Place,
+    folder: &FilePlace,
     stage: Activity,
     fault: &CaughtPanic,
     trace: &[u8],
@@ -27,7 +27,7 @@ pub(super) fn fault_result(
 }
 
 /// Writes a trace into the folder. The file's name contains the scene's name and the trace's digest.
-fn save_trace(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
+fn save_trace(folder: &FilePlace, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     let scene: String =
         task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let digest = blake3::hash(trace).to_hex();

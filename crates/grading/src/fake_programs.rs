@@ -6,7 +6,7 @@ use super::{
     grader::{Grader, Options, Submission},
     plan::{self, Plan},
 };
-use fosssim_files::Place;
+use fosssim_files::FilePlace;
 use fosssim_model::{
     scene::Scene,
     sim::{Observer, RootSearch, Simulation, Zone},
@@ -130,7 +130,7 @@ fn run_fake(job: &Job) -> FakeRun {
 pub(super) struct TestGrading {
     pub(super) folder: tempfile::TempDir,
     backend: Backend,
-    faults: Place,
+    faults: FilePlace,
     pub(super) starts: Arc<Mutex<Vec<String>>>,
 }
 
@@ -146,7 +146,7 @@ impl TestGrading {
             run_fake(job)
         });
         let folder = tempfile::tempdir().expect("folder");
-        Self { faults: Place::new(folder.path(), ""), folder, backend, starts }
+        Self { faults: FilePlace::new(folder.path(), ""), folder, backend, starts }
     }
 
     pub(super) fn submissions(&self, names: &[&str]) -> Vec<Submission> {

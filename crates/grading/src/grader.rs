@@ -25,7 +25,7 @@ use super::{
     timings::Timings,
     verdict::Verdict,
 };
-use fosssim_files::Place;
+use fosssim_files::FilePlace;
 use fosssim_judge::Rules;
 use fosssim_sandbox::Backend;
 use std::{
@@ -68,7 +68,7 @@ pub struct Options {
 }
 
 /// A function that returns the file in which the trace of a submission's scene is saved.
-pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
+pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> FilePlace + Sync + 'a;
 
 /// The data and settings that all submissions of a grading have in common.
 #[derive(Clone, Copy)]
@@ -82,7 +82,7 @@ pub struct Grader<'a> {
     /// The options of the grading.
     pub options: Options,
     /// The folder for traces on which the grader failed. It is created when it is needed.
-    pub fault_folder: &'a Place,
+    pub fault_folder: &'a FilePlace,
     /// The function that names the files for traces that are not accepted; `None` if these are not saved.
     pub trace_file: Option<&'a TraceFile<'a>>,
     /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
@@ -183,7 +183,7 @@ impl<'a> SharedGrading<'a> {
     fn find_result(
         &self,
         key: &ResultKey,
-        trace: Option<&Place>,
+        trace: Option<&FilePlace>,
         cards: Option<Cards<'_>>,
         students: Hints,
     ) -> Option<FoundResult> {
@@ -387,7 +387,7 @@ impl<'a> SubmissionGrading<'a> {
         &self,
         staged: &StagedProgram,
         scene: &SceneTask,
-        trace: Option<&Place>,
+        trace: Option<&FilePlace>,
         tell: &mut dyn FnMut(SceneEvent),
     ) -> SceneResult {
         let mut told = Instant::now();
@@ -402,7 +402,7 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     /// Returns a runner for a scene. If the trace is not accepted, the runner saves it in `trace`.
-    pub(super) fn new_runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
+    pub(super) fn new_runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b FilePlace>) -> Runner<'b> {
         let grader = self.grader;
         Runner {
             backend: grader.backend,

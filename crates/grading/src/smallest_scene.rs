@@ -146,7 +146,7 @@ impl Shrinker<'_> {
                 runs += 1;
                 let seen = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
                 let seen = seen.filter(|_| !self.runner.cancellation.is_cancelled())?;
-                let holds = reason.holds(scene, &seen, is_alone);
+                let holds = reason.is_reproduced(scene, &seen, is_alone);
                 held = if holds { Some(seen) } else { held.take() };
                 Some(holds)
             };

@@ -320,7 +320,7 @@ fn copy_folder(
         )));
     }
     for entry in from.names().map_err(|error| classify_error(name, error))? {
-        if fosssim_intake::is_litter(&entry) {
+        if fosssim_intake::is_system_file(&entry) {
             continue;
         }
         budget.files = budget.files.checked_sub(1).ok_or_else(too_large_error)?;

@@ -102,7 +102,7 @@ pub enum ArchiveError {
 ///
 /// # Errors
 /// Fails if the archive is rejected. The error is the reason.
-pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
+pub fn list_archive(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, None)
 }
 
@@ -131,7 +131,7 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
 /// attributes and window settings of Finder, picture caches of Explorer, and CMake's cache of a build on another
 /// machine, which would prevent a build here.
 #[must_use]
-pub fn is_litter(name: &OsStr) -> bool {
+pub fn is_system_file(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
     const NAMES: [&[u8]; 6] =
         [b"__MACOSX", b".DS_Store", b"Thumbs.db", b"desktop.ini", b"CMakeCache.txt", b"CMakeFiles"];
@@ -145,7 +145,7 @@ struct Walk<'a> {
     folder: Option<&'a Path>,
     entries: usize,
     bytes: u64,
-    seen: BTreeSet<PathBuf>,
+    seen_paths: BTreeSet<PathBuf>,
     folders: BTreeSet<PathBuf>,
     files: Vec<PathBuf>,
 }
@@ -157,7 +157,7 @@ fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<
         folder,
         entries: 0,
         bytes: 0,
-        seen: BTreeSet::new(),
+        seen_paths: BTreeSet::new(),
         folders: BTreeSet::new(),
         files: Vec::new(),
     };
@@ -188,7 +188,7 @@ fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
 }
 
 /// Returns the first bytes of a file, and rewinds it.
-fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
+fn read_start(file: &mut File) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     file.seek(SeekFrom::Start(0))?;
     file.take(START_BYTES as u64).read_to_end(&mut start)?;
@@ -211,7 +211,7 @@ fn escape_name(name: &[u8]) -> String {
 impl Walk<'_> {
     /// Reads all entries of an archive of any kind.
     fn walk_archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
-        let start = start_of(&mut file).map_err(ArchiveError::Read)?;
+        let start = read_start(&mut file).map_err(ArchiveError::Read)?;
         match FileKind::from_start(&start) {
             FileKind::Archive(ArchiveKind::Zip) => self.walk_zip(file),
             FileKind::Archive(ArchiveKind::TarGz) => self.walk_tar(GzDecoder::new(BufReader::new(file))),
@@ -295,7 +295,7 @@ impl Walk<'_> {
     }
 
     /// Returns the path of an entry. Fails if it leads out of the folder.
-    fn path(&mut self, name: &[u8]) -> Result<PathBuf, ArchiveError> {
+    fn check_path(&mut self, name: &[u8]) -> Result<PathBuf, ArchiveError> {
         self.entries += 1;
         if self.entries > self.limits.entries {
             return Err(ArchiveError::Entries(self.limits.entries));
@@ -323,7 +323,7 @@ impl Walk<'_> {
     /// Records the folders that contain a file. Fails if one of them is a file.
     fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
-            if self.seen.contains(folder) {
+            if self.seen_paths.contains(folder) {
                 return Err(ArchiveError::Twice(escape_name(name)));
             }
             self.folders.insert(folder.to_owned());
@@ -332,8 +332,8 @@ impl Walk<'_> {
     }
 
     fn note_folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
-        let path = self.path(name)?;
-        if path.iter().any(is_litter) {
+        let path = self.check_path(name)?;
+        if path.iter().any(is_system_file) {
             return Ok(());
         }
         self.note_folders_above(&path.join("a file"), name)?;
@@ -344,12 +344,12 @@ impl Walk<'_> {
     }
 
     fn unpack_file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
-        let path = self.path(name)?;
-        if path.iter().any(is_litter) {
+        let path = self.check_path(name)?;
+        if path.iter().any(is_system_file) {
             return self.copy(input, &mut io::sink()).map(drop);
         }
         self.note_folders_above(&path, name)?;
-        if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
+        if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen_paths.insert(path.clone()) {
             return Err(ArchiveError::Twice(escape_name(name)));
         }
         match self.folder {
@@ -441,10 +441,10 @@ mod tests {
     #[test]
     fn a_bomb_is_told_by_its_ratio() {
         let bomb = || zip(&[("zeros", None, &vec![0; (50 << 20) + 1])]);
-        let told = look_through(bomb(), ArchiveLimits::DEFAULT).unwrap_err().to_string();
+        let told = list_archive(bomb(), ArchiveLimits::DEFAULT).unwrap_err().to_string();
         assert!(told.contains("more than 52428800 bytes"), "{told}");
         let deep = zip(&[(&"d/".repeat(MAX_DEPTH + 1), None, b"")]);
-        assert!(matches!(look_through(deep, ArchiveLimits::DEFAULT), Err(ArchiveError::Depth(_))));
+        assert!(matches!(list_archive(deep, ArchiveLimits::DEFAULT), Err(ArchiveError::Depth(_))));
     }
 
     /// Returns an archive with an entry of the given kind and size, followed by a file.
@@ -466,7 +466,7 @@ mod tests {
     #[test]
     fn headers_of_tar_archives_name_files_and_are_limited() {
         let long = format!("{}FOSSSim", "folder/".repeat(40));
-        let look = |kind, size, path: &str| look_through(tar(kind, size, path), ArchiveLimits::DEFAULT);
+        let look = |kind, size, path: &str| list_archive(tar(kind, size, path), ArchiveLimits::DEFAULT);
         let files = look(tar::EntryType::Regular, 7, &long).unwrap();
         assert_eq!(files, [Path::new("entry"), Path::new(&long)]);
         for kind in [tar::EntryType::GNULongName, tar::EntryType::XHeader] {
@@ -475,7 +475,7 @@ mod tests {
         }
         assert!(matches!(look(tar::EntryType::GNUSparse, 0, &long), Err(ArchiveError::Kind(_))));
         let passed_over = ArchiveLimits { bytes: 1 << 20, entries: 2 };
-        let told = look_through(tar(tar::EntryType::XGlobalHeader, 2 << 20, &long), passed_over).unwrap_err();
+        let told = list_archive(tar(tar::EntryType::XGlobalHeader, 2 << 20, &long), passed_over).unwrap_err();
         assert!(told.to_string().contains("possible archive bomb"), "{told}");
     }
 
@@ -501,7 +501,7 @@ mod tests {
         bytes.extend([b"PK\x05\x06", &end[..]].concat());
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&bytes).unwrap();
-        let told = look_through(file, ArchiveLimits::DEFAULT).unwrap_err().to_string();
+        let told = list_archive(file, ArchiveLimits::DEFAULT).unwrap_err().to_string();
         assert!(told.contains("possible archive bomb"), "{told}");
     }
 }

@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
 
 /// The result of a command line that ends the program without a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub(crate) struct Ending {
+pub(crate) struct EarlyExit {
     pub(crate) stdout: Vec<u8>,
     pub(crate) stderr: Vec<u8>,
     pub(crate) exit_code: u8,
@@ -31,33 +31,33 @@ pub(crate) struct Ending {
 ///
 /// # Errors
 /// Fails with a text to print and an exit code: help, version, or a parse error.
-pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Ending> {
+pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, EarlyExit> {
     let mut values: [Option<&[u8]>; FLAGS.len()] = [None; FLAGS.len()];
     let mut words = words.iter().map(Vec::as_slice);
     while let Some(word) = words.next() {
         match word {
             b"--" | b"--ignore_rest" => break,
-            b"-h" | b"--help" => return Err(Ending { stdout: usage::help_text(program), ..Ending::default() }),
-            b"--version" => return Err(Ending { stdout: usage::version_text(program), ..Ending::default() }),
+            b"-h" | b"--help" => return Err(EarlyExit { stdout: usage::help_text(program), ..EarlyExit::default() }),
+            b"--version" => return Err(EarlyExit { stdout: usage::version_text(program), ..EarlyExit::default() }),
             // The library treats these words as bundles of flags without any flag left.
             b"" | b"-" => continue,
             _ => {}
         }
-        let Some(place) = FLAGS.iter().position(|flag| is(flag, word)) else {
-            return Err(wrong_argument(program, word, b"Couldn't find match for argument"));
+        let Some(place) = FLAGS.iter().position(|flag| matches_flag(flag, word)) else {
+            return Err(wrong_argument_exit(program, word, b"Couldn't find match for argument"));
         };
         let flag = &FLAGS[place];
         let title = format!("-{} (--{})", flag.letter, flag.name);
         if values[place].is_some() {
-            return Err(wrong_argument(program, title.as_bytes(), b"Argument already set!"));
+            return Err(wrong_argument_exit(program, title.as_bytes(), b"Argument already set!"));
         }
         let Some(value) = words.next() else {
-            return Err(wrong_argument(program, title.as_bytes(), b"Missing a value for this argument!"));
+            return Err(wrong_argument_exit(program, title.as_bytes(), b"Missing a value for this argument!"));
         };
         if flag.boolean
             && let Err(text) = parse_boolean(value)
         {
-            return Err(wrong_argument(program, title.as_bytes(), &text));
+            return Err(wrong_argument_exit(program, title.as_bytes(), &text));
         }
         values[place] = Some(value);
     }
@@ -67,7 +67,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
         value(letter).and_then(|bytes| parse_boolean(bytes).ok().flatten()).or(default).unwrap_or(false)
     };
     let Some(scene) = text("s") else {
-        return Err(failure(program, b" ", b"Required argument missing: scene"));
+        return Err(failure_exit(program, b" ", b"Required argument missing: scene"));
     };
     Ok(Arguments {
         scene,
@@ -79,7 +79,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
     })
 }
 
-fn is(flag: &Flag, word: &[u8]) -> bool {
+fn matches_flag(flag: &Flag, word: &[u8]) -> bool {
     match word.strip_prefix(b"--") {
         Some(name) => name == flag.name.as_bytes(),
         None => word.strip_prefix(b"-") == Some(flag.letter.as_bytes()),
@@ -121,19 +121,19 @@ fn describe_unreadable(value: &[u8]) -> Vec<u8> {
     [b"Couldn't read argument value from string '", value, b"'"].concat()
 }
 
-fn wrong_argument(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
-    failure(program, &[b"Argument: ", argument].concat(), text)
+fn wrong_argument_exit(program: &[u8], argument: &[u8], text: &[u8]) -> EarlyExit {
+    failure_exit(program, &[b"Argument: ", argument].concat(), text)
 }
 
-fn failure(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
-    Ending { stderr: usage::failure(program, argument, text), exit_code: 1, ..Ending::default() }
+fn failure_exit(program: &[u8], argument: &[u8], text: &[u8]) -> EarlyExit {
+    EarlyExit { stderr: usage::failure(program, argument, text), exit_code: 1, ..EarlyExit::default() }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn run(words: &[&str]) -> Result<Arguments, Ending> {
+    fn run(words: &[&str]) -> Result<Arguments, EarlyExit> {
         let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
         parse(b"./FOSSSimOracle", &words)
     }

@@ -30,7 +30,7 @@
 //! }
 //!
 //! fn main() -> ExitCode {
-//!     fosssim_original::run_if_meant(&Plain).unwrap_or_else(|_words| ExitCode::from(2))
+//!     fosssim_original::run_if_requested(&Plain).unwrap_or_else(|_words| ExitCode::from(2))
 //! }
 //! ```
 #![forbid(unsafe_code)]
@@ -38,13 +38,13 @@
 mod arguments;
 mod collisions;
 mod flags;
+mod messages;
 mod run;
 mod transcript;
 mod usage;
 mod verdict;
-mod words;
 
-pub use words::NO_PICTURE_FOLDER;
+pub use messages::NO_PICTURE_FOLDER;
 
 use fosssim_model::scene::Scene;
 use std::{
@@ -76,7 +76,7 @@ fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
 ///
 /// # Errors
 /// Fails with the arguments for other commands, beginning with the program's own name.
-pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
+pub fn run_if_requested(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     let words: Vec<OsString> = env::args_os().collect();
     match parse_call(&words) {
         Some((program, words)) => {

@@ -2,9 +2,9 @@
 use crate::{
     Pictures, Services,
     arguments::Arguments,
+    messages::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, open_failure},
     transcript::{Heading, Task, Transcript},
     verdict::residual_file,
-    words::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, read_limited, with_timeout};
 use fosssim_judge::{MissingResult, ReadFailure, Stop, replay, replay::Progress};
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     }
     let (scene, identity) = match load(arguments) {
         Ok(loaded) => loaded,
-        Err(refusal) => return refuse_scene(arguments, &refusal),
+        Err(refusal) => return reject_scene(arguments, &refusal),
     };
     if let Some(message) = find_unsupported(arguments, &scene.scene) {
         return print_error(message);
@@ -52,7 +52,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     let pictures = match pictures.transpose() {
         Ok(pictures) => pictures,
         Err(message) if message == NO_PICTURE_FOLDER => {
-            return without_folder(arguments, identity, &scene.scene, transcript);
+            return end_without_folder(arguments, identity, &scene.scene, transcript);
         }
         Err(message) => return print_error(message),
     };
@@ -72,8 +72,8 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
             }
             // The original prints the third word of the command line instead of the file's name.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
-            crate::print_error(&not_opened("input", third_word));
-            transcript.print_not_opened();
+            crate::print_error(&open_failure("input", third_word));
+            transcript.print_open_failure();
             drop(transcript.finish());
             FAILURE_CODE
         }
@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
 }
 
 /// Ends a run whose folder for pictures is missing. The original detects this after the first record.
-fn without_folder(
+fn end_without_folder(
     arguments: &Arguments,
     identity: Identity,
     scene: &Scene,
@@ -123,7 +123,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
     Ok((original::read(&bytes)?, Identity::from_metadata(&metadata)))
 }
 
-fn refuse_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
+fn reject_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
     if refusal.kind == RejectionKind::Crash {
         // The original crashes with an uncaught exception in this case.
         let name = arguments.scene.display();
@@ -152,11 +152,11 @@ fn create(name: &Path, scene: Identity) -> Result<File, Vec<u8>> {
         let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());
         return Err(text.into_bytes());
     }
-    create_now(name).map_err(|_| not_opened("output", name.as_os_str().as_bytes()))
+    create_file(name).map_err(|_| open_failure("output", name.as_os_str().as_bytes()))
 }
 
 /// Creates or truncates a file. A pipe without a reader is an error and does not block.
-fn create_now(name: &Path) -> io::Result<File> {
+fn create_file(name: &Path) -> io::Result<File> {
     open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
 }
 
@@ -183,7 +183,7 @@ fn simulate<W: Write>(
         if stopped.is_some() || recorder.has_failed() {
             break;
         }
-        transcript.step_ends(step);
+        transcript.end_step(step);
         if let Some(pictures) = &mut pictures
             && let Err(error) = pictures.step(step, &simulation.state().positions)
         {
@@ -198,7 +198,7 @@ fn simulate<W: Write>(
     transcript.print_exit_line();
     drop(transcript.finish());
     match (stopped, written) {
-        (Some(error), _) => step_failed(&error),
+        (Some(error), _) => end_after_failed_step(&error),
         // The original would continue and claim that the trace was saved.
         (None, Err(error)) => print_error(format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
@@ -230,17 +230,17 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     transcript.print_end(&outcome);
     drop(transcript.finish());
     if let Some(residuals) = residual_file(&outcome, scene.assignment().definition())
-        && let Ok(mut file) = create_now(Path::new("residual.txt"))
+        && let Ok(mut file) = create_file(Path::new("residual.txt"))
     {
         // The original follows links, truncates the file and ignores failures, so this does as well.
         drop(file.write_all(residuals.as_bytes()));
     }
     if let Some(error) = &outcome.parity.endless_step {
-        return step_failed(error);
+        return end_after_failed_step(error);
     }
     match &outcome.stop {
         None => 0,
-        Some(Stop::Step(error)) => step_failed(error),
+        Some(Stop::Step(error)) => end_after_failed_step(error),
         Some(Stop::Trace { cause: ReadFailure::State | ReadFailure::Impulses, .. }) => FAILURE_CODE,
         Some(Stop::Trace {
             cause: ReadFailure::Memory | ReadFailure::Limit | ReadFailure::Io,
@@ -253,7 +253,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
 }
 
 /// Ends a run in which the original computes endlessly or fails.
-fn step_failed(error: &StepError) -> u8 {
+fn end_after_failed_step(error: &StepError) -> u8 {
     match error {
         StepError::VortexHessian { .. } => print_error(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {

@@ -1,7 +1,8 @@
 //! The original's standard output, as a state machine over events (oracle-behavior.md 3, 5, 6).
 use crate::{
-    collisions, verdict,
-    words::{BLUE, GREEN, PINK, RED, RESET},
+    collisions,
+    messages::{BLUE, GREEN, PINK, RED, RESET},
+    verdict,
 };
 use fosssim_judge::{
     Book, Outcome, ReadFailure, Residuals, Stop,
@@ -41,7 +42,7 @@ pub(crate) enum Task<'a> {
 /// Writes the original's standard output to a stream, event by event.
 ///
 /// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::graded`]. For recording and plain runs,
-/// call `begins`, `observe_step_begin` and [`Transcript::step_ends`] per step, then [`Transcript::print_completion`]
+/// call `begins`, `observe_step_begin` and [`Transcript::end_step`] per step, then [`Transcript::print_completion`]
 /// and [`Transcript::print_exit_line`]. The first error of the stream is kept until [`Transcript::finish`]; later text
 /// is dropped.
 #[derive(Debug)]
@@ -95,7 +96,7 @@ impl<'a, W: Write> Transcript<'a, W> {
             Task::Record(file) => self.print_message_about("Saved simulation to file '", file, "'."),
             Task::Grade(file) => {
                 self.print_message_about("Colsing benchmarked simulation file '", file, "'.");
-                self.print_not_opened();
+                self.print_open_failure();
             }
         }
     }
@@ -122,11 +123,11 @@ impl<'a, W: Write> Transcript<'a, W> {
             self.print_message_about("Colsing benchmarked simulation file '", file, "'.");
         }
         let collisions = self.heading.scene.assignment().definition().verdict;
-        self.write(verdict::lines(outcome, collisions).as_bytes());
+        self.write(verdict::verdict_lines(outcome, collisions).as_bytes());
     }
 
     /// Prints the exit handler's lines if the trace could not be opened, in which case there is no banner.
-    pub(crate) fn print_not_opened(&mut self) {
+    pub(crate) fn print_open_failure(&mut self) {
         self.write(verdict::describe_incomplete(&Residuals::default()).as_bytes());
     }
 
@@ -142,7 +143,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         Ok(self.stream)
     }
 
-    fn banner(&mut self) {
+    fn print_banner(&mut self) {
         self.write(format!("{GREEN}{}{RESET}\n\n", BANNER.join("\n")).as_bytes());
         let scene = self.heading.scene;
         self.print_entry("FOSSSim Version", scene.assignment().definition().version.as_bytes());
@@ -166,7 +167,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     }
 
     /// Ends a step, and prints the time that it took if the original does.
-    pub(crate) fn step_ends(&mut self, step: u32) {
+    pub(crate) fn end_step(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();
         let [frame, total] = [now - clock.frame, now - clock.start].map(|time| format_g(time.as_secs_f64()));
@@ -210,7 +211,7 @@ impl<'a, W: Write> Transcript<'a, W> {
 
 impl<W: Write> Progress for Transcript<'_, W> {
     fn observe_begin(&mut self) {
-        self.banner();
+        self.print_banner();
     }
 
     fn observe_step_begin(&mut self, step: u32) {
@@ -223,7 +224,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
     }
 
     fn observe_step_end(&mut self, step: u32, remarks: &[Remark]) {
-        self.step_ends(step);
+        self.end_step(step);
         let mut header_due = true;
         for remark in remarks {
             if let Some(line) = collisions::line(remark) {

@@ -20,7 +20,7 @@ pub(crate) fn help_text(program: &[u8]) -> Vec<u8> {
         text.push(b'\n');
     };
     for flag in list_flags(program) {
-        let value = format!(" <{}>", kind(flag));
+        let value = format!(" <{}>", value_kind(flag));
         let required = if flag.required { "(required)  " } else { "" };
         entry(&format!("-{}{value},  --{}{value}", flag.letter, flag.name), &format!("{required}{}", flag.help));
     }
@@ -45,7 +45,7 @@ pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8
 fn brief_usage(program: &[u8]) -> Vec<u8> {
     let mut line = [program, b" "].concat();
     for flag in list_flags(program) {
-        let entry = format!("-{} <{}>", flag.letter, kind(flag));
+        let entry = format!("-{} <{}>", flag.letter, value_kind(flag));
         let entry = if flag.required { format!(" {entry}") } else { format!(" [{entry}]") };
         line.extend(entry.as_bytes());
     }
@@ -54,7 +54,7 @@ fn brief_usage(program: &[u8]) -> Vec<u8> {
     wrap(&line, 3, (program.len() + 2).min(WIDTH / 2))
 }
 
-const fn kind(flag: &Flag) -> &'static str {
+const fn value_kind(flag: &Flag) -> &'static str {
     if flag.boolean { "boolean" } else { "string" }
 }
 

@@ -1,5 +1,5 @@
 //! Writes the original's closing text about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
-use crate::words::{PINK, RESET};
+use crate::messages::{PINK, RESET};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
 use fosssim_num::number_format::format_g;
@@ -14,7 +14,7 @@ const RESIDUAL_NAMES: [&str; 4] = [
 
 /// Returns the lines after the file has been closed, with a verdict, or without one if grading did not finish.
 /// `collisions` is the assignment's name for the verdict on collisions.
-pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
+pub(crate) fn verdict_lines(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
         return describe_incomplete(&outcome.parity.residuals);
     }

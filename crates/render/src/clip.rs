@@ -11,7 +11,7 @@ pub struct ClipRectangle {
 
 impl ClipRectangle {
     /// Returns the part of a line inside the rectangle (Liang and Barsky, ACM TOG 3, 1984), or `None` if there is none.
-    pub fn line(&self, from: Point, to: Point) -> Option<[Point; 2]> {
+    pub fn clip_line(&self, from: Point, to: Point) -> Option<[Point; 2]> {
         if !from.iter().chain(&to).all(|value| value.is_finite()) {
             return None;
         }
@@ -45,7 +45,7 @@ impl ClipRectangle {
 
     /// Returns the corners of the part of the rectangle where `inside`, a linear function of the position, is not
     /// negative (Sutherland and Hodgman, Comm. ACM 17, 1974).
-    pub fn side(&self, inside: impl Fn(Point) -> f64) -> Vec<Point> {
+    pub fn clip_half_plane(&self, inside: impl Fn(Point) -> f64) -> Vec<Point> {
         let ([left, top], [right, bottom]) = (self.low, self.high);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
         let mut kept = Vec::new();
@@ -74,14 +74,16 @@ mod tests {
 
     #[test]
     fn lines_are_cut_at_the_frame() {
-        assert_eq!(FRAME.line([1.0, 1.0], [9.0, 4.0]), Some([[1.0, 1.0], [9.0, 4.0]]));
-        assert_eq!(FRAME.line([-10.0, 2.0], [1e9, 2.0]), Some([[0.0, 2.0], [10.0, 2.0]]));
-        assert_eq!(FRAME.line([-1.0, 6.0], [11.0, 6.0]), None);
-        assert_eq!(FRAME.line([f64::NAN, 0.0], [1.0, 1.0]), None);
-        assert_eq!(FRAME.line([f64::NEG_INFINITY, 0.0], [1.0, 1.0]), None);
-        assert_eq!(FRAME.line([3.0, 3.0], [3.0, 3.0]), Some([[3.0, 3.0]; 2]));
+        assert_eq!(FRAME.clip_line([1.0, 1.0], [9.0, 4.0]), Some([[1.0, 1.0], [9.0, 4.0]]));
+        assert_eq!(FRAME.clip_line([-10.0, 2.0], [1e9, 2.0]), Some([[0.0, 2.0], [10.0, 2.0]]));
+        assert_eq!(FRAME.clip_line([-1.0, 6.0], [11.0, 6.0]), None);
+        assert_eq!(FRAME.clip_line([f64::NAN, 0.0], [1.0, 1.0]), None);
+        assert_eq!(FRAME.clip_line([f64::NEG_INFINITY, 0.0], [1.0, 1.0]), None);
+        assert_eq!(FRAME.clip_line([3.0, 3.0], [3.0, 3.0]), Some([[3.0, 3.0]; 2]));
         for far in [1e100, 1e300, f64::MAX] {
-            for ends in FRAME.line([-far, -far], [far, far]).into_iter().chain(FRAME.line([-far, 1.0], [far, 2.0])) {
+            for ends in
+                FRAME.clip_line([-far, -far], [far, far]).into_iter().chain(FRAME.clip_line([-far, 1.0], [far, 2.0]))
+            {
                 assert!(ends.iter().flatten().all(|value| value.abs() < 100.0), "{ends:?}");
             }
         }
@@ -89,9 +91,9 @@ mod tests {
 
     #[test]
     fn a_side_of_a_line_is_a_polygon() {
-        assert_eq!(FRAME.side(|[x, _]| x - 4.0), [[4.0, 0.0], [10.0, 0.0], [10.0, 5.0], [4.0, 5.0]]);
-        assert_eq!(FRAME.side(|_| 1.0).len(), 4);
-        assert_eq!(FRAME.side(|_| -1.0).len(), 0);
-        assert_eq!(FRAME.side(|_| f64::NAN).len(), 0);
+        assert_eq!(FRAME.clip_half_plane(|[x, _]| x - 4.0), [[4.0, 0.0], [10.0, 0.0], [10.0, 5.0], [4.0, 5.0]]);
+        assert_eq!(FRAME.clip_half_plane(|_| 1.0).len(), 4);
+        assert_eq!(FRAME.clip_half_plane(|_| -1.0).len(), 0);
+        assert_eq!(FRAME.clip_half_plane(|_| f64::NAN).len(), 0);
     }
 }

@@ -34,7 +34,7 @@ impl Rgb {
 
     /// Returns black or white. The color that is readable on this background is chosen.
     #[must_use]
-    pub fn ink(self) -> Self {
+    pub fn contrasting_ink(self) -> Self {
         if self.brightness() > 127 { Self::BLACK } else { Self::WHITE }
     }
 
@@ -61,9 +61,9 @@ mod tests {
 
     #[test]
     fn ink_can_be_read_on_its_background() {
-        assert_eq!(Rgb::WHITE.ink(), Rgb::BLACK);
-        assert_eq!(Rgb([20, 20, 60]).ink(), Rgb::WHITE);
-        assert_eq!(Rgb([255, 230, 0]).ink(), Rgb::BLACK);
+        assert_eq!(Rgb::WHITE.contrasting_ink(), Rgb::BLACK);
+        assert_eq!(Rgb([20, 20, 60]).contrasting_ink(), Rgb::WHITE);
+        assert_eq!(Rgb([255, 230, 0]).contrasting_ink(), Rgb::BLACK);
     }
 
     #[test]

@@ -9,7 +9,7 @@ pub const LETTER_HEIGHT: u32 = 7;
 /// Returns the rows of a letter from the top, or `None` for an unknown letter. The highest of five bits is the leftmost
 /// dot.
 #[rustfmt::skip]
-pub const fn rows(letter: char) -> Option<[u8; LETTER_HEIGHT as usize]> {
+pub const fn letter_rows(letter: char) -> Option<[u8; LETTER_HEIGHT as usize]> {
     Some(match letter {
         '0' => [0b01110, 0b10001, 0b10011, 0b10101, 0b11001, 0b10001, 0b01110],
         '1' => [0b00100, 0b01100, 0b00100, 0b00100, 0b00100, 0b00100, 0b01110],
@@ -38,14 +38,14 @@ pub const fn rows(letter: char) -> Option<[u8; LETTER_HEIGHT as usize]> {
 
 #[cfg(test)]
 mod tests {
-    use super::rows;
+    use super::letter_rows;
     use crate::number::format_short;
 
     #[test]
     fn every_label_can_be_written() {
         let numbers = [-1234.5678, 1e-300, 9e99, f64::NAN, f64::INFINITY, f64::NEG_INFINITY].map(format_short).concat();
         for letter in format!("step {} t {numbers}+", u32::MAX).chars().filter(|&letter| letter != ' ') {
-            assert!(rows(letter).is_some_and(|rows| rows.iter().any(|&row| row > 0)), "{letter}");
+            assert!(letter_rows(letter).is_some_and(|rows| rows.iter().any(|&row| row > 0)), "{letter}");
         }
     }
 }

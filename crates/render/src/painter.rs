@@ -111,7 +111,7 @@ impl Painter {
     /// Returns all colors in the pictures, the background first.
     #[must_use]
     pub fn colors(&self) -> Vec<Rgb> {
-        let mut colors = vec![self.background, self.background.ink(), self.overlay_color()];
+        let mut colors = vec![self.background, self.background.contrasting_ink(), self.overlay_color()];
         colors.extend(self.trails.iter().map(|trail| trail.color));
         colors.extend(&self.particles);
         colors.extend(self.edges.iter().map(|edge| edge.2));
@@ -175,8 +175,8 @@ impl Painter {
     }
 
     fn draw_disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
-        let place = self.view.place(center);
-        let radius = self.view.length(radius).max(MIN_WIDTH);
+        let place = self.view.to_pixels(center);
+        let radius = self.view.to_pixel_length(radius).max(MIN_WIDTH);
         if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
             return;
         }
@@ -198,24 +198,24 @@ impl Painter {
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];
-                frame.side(|[x, y]| radius - ((x - place[0]) * unit[0] + (y - place[1]) * unit[1]))
+                frame.clip_half_plane(|[x, y]| radius - ((x - place[0]) * unit[0] + (y - place[1]) * unit[1]))
             }
-            false => frame.side(|_| 1.0),
+            false => frame.clip_half_plane(|_| 1.0),
         };
         shapes.push(Shape::Area { points, paint });
     }
 
     fn draw_edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
-        let wide = 2.0 * self.view.length(radius);
+        let wide = 2.0 * self.view.to_pixel_length(radius);
         let width = if wide.is_nan() { MIN_WIDTH } else { wide.clamp(MIN_WIDTH, MAX_DISC_RADIUS) };
         let frame = self.frame(width);
-        if let Some(ends) = frame.line(self.view.place(first), self.view.place(second)) {
+        if let Some(ends) = frame.clip_line(self.view.to_pixels(first), self.view.to_pixels(second)) {
             shapes.push(Shape::Line { points: ends.to_vec(), width, paint });
         }
     }
 
     fn draw_half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
-        let place = self.view.place(point);
+        let place = self.view.to_pixels(point);
         // The y axis points down in the picture.
         let (x, y) = (normal.x, -normal.y);
         let length = x.hypot(y);
@@ -224,7 +224,7 @@ impl Painter {
         }
         let unit = [x / length, y / length];
         let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
-        let points = self.frame(4.0).side(|point| -above(point));
+        let points = self.frame(4.0).clip_half_plane(|point| -above(point));
         if points.len() > 2 {
             shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE_DEPTH) });
         }
@@ -236,7 +236,7 @@ impl Painter {
         let reach = f64::from(size.width()) + f64::from(size.height());
         let along = [-unit[1] * reach, unit[0] * reach];
         let ends = [[near[0] - along[0], near[1] - along[1]], [near[0] + along[0], near[1] + along[1]]];
-        if let Some(ends) = self.frame(4.0).line(ends[0], ends[1]) {
+        if let Some(ends) = self.frame(4.0).clip_line(ends[0], ends[1]) {
             shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(color) });
         }
     }
@@ -244,7 +244,7 @@ impl Painter {
     fn write(&self, step: u32, time: f64, shapes: &mut Vec<Shape>) {
         let place = [8.0, f64::from(self.size().height()) - 8.0];
         let text = format!("step {step}  t {}", format_short(time));
-        shapes.push(Shape::Text { place, text, color: self.background.ink() });
+        shapes.push(Shape::Text { place, text, color: self.background.contrasting_ink() });
     }
 }
 
@@ -275,7 +275,7 @@ impl Trail {
             piece.clear();
         };
         for (&(_, from), &(_, to)) in self.points.iter().zip(self.points.iter().skip(1)) {
-            let Some([from, to]) = frame.line(view.place(from), view.place(to)) else {
+            let Some([from, to]) = frame.clip_line(view.to_pixels(from), view.to_pixels(to)) else {
                 finish(&mut piece);
                 continue;
             };

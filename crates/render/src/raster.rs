@@ -65,12 +65,12 @@ impl Raster {
         if matches!(paint, Paint::Dashed(_)) {
             self.stroke(&path, 2.0, paint);
         } else {
-            self.pixels.fill_path(&path, &ink(paint), FillRule::Winding, Transform::identity(), None);
+            self.pixels.fill_path(&path, &to_paint(paint), FillRule::Winding, Transform::identity(), None);
         }
     }
 
     fn draw_line(&mut self, points: &[Point], width: f64, paint: Paint) {
-        if let Some(path) = path(points, false) {
+        if let Some(path) = build_path(points, false) {
             self.stroke(&path, to_f32(width), paint);
         }
     }
@@ -84,20 +84,20 @@ impl Raster {
             dash: if dashed { StrokeDash::new(DASH.to_vec(), 0.0) } else { None },
             ..Stroke::default()
         };
-        self.pixels.stroke_path(path, &ink(paint), &stroke, Transform::identity(), None);
+        self.pixels.stroke_path(path, &to_paint(paint), &stroke, Transform::identity(), None);
     }
 
     fn fill_area(&mut self, points: &[Point], paint: Paint) {
-        if let Some(path) = path(points, true) {
-            self.pixels.fill_path(&path, &ink(paint), FillRule::Winding, Transform::identity(), None);
+        if let Some(path) = build_path(points, true) {
+            self.pixels.fill_path(&path, &to_paint(paint), FillRule::Winding, Transform::identity(), None);
         }
     }
 
     fn draw_text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
-        let paint = ink(Paint::Solid(color));
+        let paint = to_paint(Paint::Solid(color));
         let top = base - f64::from(DOT_SIZE * font::LETTER_HEIGHT);
         for (place, letter) in text.chars().enumerate() {
-            let Some(rows) = font::rows(letter) else { continue };
+            let Some(rows) = font::letter_rows(letter) else { continue };
             #[expect(clippy::cast_precision_loss, reason = "labels are short")]
             let start = left + place as f64 * f64::from(DOT_SIZE * font::LETTER_WIDTH);
             for (row, bits) in (0_u32..).zip(rows) {
@@ -120,7 +120,7 @@ fn to_f32(value: f64) -> f32 {
     value as f32
 }
 
-fn path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
+fn build_path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
     let (&[x, y], rest) = points.split_first()?;
     let mut builder = PathBuilder::new();
     builder.move_to(to_f32(x), to_f32(y));
@@ -133,7 +133,7 @@ fn path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
     builder.finish()
 }
 
-fn ink(paint: Paint) -> tiny_skia::Paint<'static> {
+fn to_paint(paint: Paint) -> tiny_skia::Paint<'static> {
     let [red, green, blue] = paint.color().0;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
     let alpha = match paint {

@@ -52,7 +52,7 @@ fn write_element(shape: &Shape, svg: &mut String) {
     let _ = match shape {
         Shape::Disc { center: [x, y], radius, paint } => {
             let (x, y, radius) = (format_pixel(*x), format_pixel(*y), format_pixel(*radius));
-            writeln!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {}/>", area(*paint))
+            writeln!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {}/>", format_area(*paint))
         }
         Shape::Line { points, width, paint } => {
             let dash = if matches!(paint, Paint::Dashed(_)) { DASH } else { "" };
@@ -61,13 +61,15 @@ fn write_element(shape: &Shape, svg: &mut String) {
                 svg,
                 "<polyline points=\"{}\" fill=\"none\" stroke=\"{}\"{} stroke-width=\"{}\" stroke-linecap=\"{cap}\" \
                  stroke-linejoin=\"round\"{dash}/>",
-                list(points),
+                format_points(points),
                 paint.color().hex(),
                 render_opacity("stroke", *paint),
                 format_pixel(*width)
             )
         }
-        Shape::Area { points, paint } => writeln!(svg, "<polygon points=\"{}\" {}/>", list(points), area(*paint)),
+        Shape::Area { points, paint } => {
+            writeln!(svg, "<polygon points=\"{}\" {}/>", format_points(points), format_area(*paint))
+        }
         Shape::Text { place: [x, y], text, color } => writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" fill=\"{}\" font-family=\"monospace\" font-size=\"14\">{}</text>",
@@ -81,7 +83,7 @@ fn write_element(shape: &Shape, svg: &mut String) {
 
 const DASH: &str = " stroke-dasharray=\"6 4\"";
 
-fn area(paint: Paint) -> String {
+fn format_area(paint: Paint) -> String {
     match paint {
         Paint::Solid(color) => format!("fill=\"{}\"", color.hex()),
         Paint::Faint(color, _) => format!("fill=\"{}\"{}", color.hex(), render_opacity("fill", paint)),
@@ -96,7 +98,7 @@ fn render_opacity(what: &str, paint: Paint) -> String {
     }
 }
 
-fn list(points: &[Point]) -> String {
+fn format_points(points: &[Point]) -> String {
     points.iter().map(|[x, y]| format!("{},{}", format_pixel(*x), format_pixel(*y))).collect::<Vec<_>>().join(" ")
 }
 

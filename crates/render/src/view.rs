@@ -7,7 +7,7 @@ use fosssim_num::vector::Vec2;
 const MARGIN: f64 = 1.1;
 
 /// The largest coordinate for which a view is fitted. The squares and sums of larger ones are infinite.
-const MAX_PLACE: f64 = 1e100;
+const MAX_COORDINATE: f64 = 1e100;
 
 /// The maximum factor by which bodies that leave the scene widen the initial view.
 const MAX_WIDENING: f64 = 4.0;
@@ -37,9 +37,9 @@ impl Extent {
     /// Widens the box to contain the particles at `positions`.
     pub fn add(&mut self, scene: &Scene, positions: &[f64]) {
         for (particle, place) in scene.particles.iter().zip(positions.chunks_exact(2)) {
-            let radius = particle.radius.clamp(0.0, MAX_PLACE);
+            let radius = particle.radius.clamp(0.0, MAX_COORDINATE);
             // Bodies without a position in the plane (NaN) are not drawn.
-            if place.iter().all(|coordinate| coordinate.abs() < MAX_PLACE) {
+            if place.iter().all(|coordinate| coordinate.abs() < MAX_COORDINATE) {
                 self.low = Vec2::new(self.low.x.min(place[0] - radius), self.low.y.min(place[1] - radius));
                 self.high = Vec2::new(self.high.x.max(place[0] + radius), self.high.y.max(place[1] + radius));
             }
@@ -60,18 +60,18 @@ impl Extent {
         0.5 * (self.low + self.high)
     }
 
-    fn half(&self) -> Vec2 {
+    fn half_size(&self) -> Vec2 {
         0.5 * (self.high - self.low)
     }
 
     /// Returns this box, limited to a few times the size of `start` around it, so that a body that flies away does not
     /// reduce the others to dots.
     #[must_use]
-    pub fn limited_to(&self, start: &Self) -> Self {
+    pub fn limit_to(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {
             return *self;
         }
-        let half = start.half();
+        let half = start.half_size();
         let most = MAX_WIDENING * half.x.max(half.y);
         let (center, reach) = (start.center(), Vec2::new(most, most));
         if !(most > 0.0) {
@@ -103,7 +103,7 @@ impl View {
             Some(Viewport { center, size: half }) if half > 0.0 => Self::new(center, [half, half], size),
             _ if extent.is_empty() => Self::new(Vec2::zeros(), [1.0, 1.0], size),
             _ => {
-                let half = MARGIN * extent.half();
+                let half = MARGIN * extent.half_size();
                 Self::new(extent.center(), [half.x, half.y], size)
             }
         }
@@ -115,7 +115,8 @@ impl View {
         // If there is a single point or none, the view shows one length unit on every side.
         let fallback = 0.5 * f64::from(size.width().min(size.height()));
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { fallback };
-        let center = if center.x.abs() < MAX_PLACE && center.y.abs() < MAX_PLACE { center } else { Vec2::zeros() };
+        let center =
+            if center.x.abs() < MAX_COORDINATE && center.y.abs() < MAX_COORDINATE { center } else { Vec2::zeros() };
         Self { size, center, scale }
     }
 
@@ -127,14 +128,14 @@ impl View {
 
     /// Returns a point of the plane in pixels, from the upper left corner.
     #[must_use]
-    pub fn place(&self, point: Vec2) -> [f64; 2] {
+    pub fn to_pixels(&self, point: Vec2) -> [f64; 2] {
         let relative = self.scale * (point - self.center);
         [0.5 * f64::from(self.size.width()) + relative.x, 0.5 * f64::from(self.size.height()) - relative.y]
     }
 
     /// Returns a length in pixels.
     #[must_use]
-    pub fn length(&self, length: f64) -> f64 {
+    pub fn to_pixel_length(&self, length: f64) -> f64 {
         self.scale * length
     }
 }
@@ -160,16 +161,16 @@ mod tests {
     #[test]
     fn everything_is_inside_and_up_is_up() {
         let view = view(&scene(""), &[-2.0, 0.0, 2.0, 1.0]);
-        let [left, low] = view.place(Vec2::new(-2.5, -0.5));
-        let [right, high] = view.place(Vec2::new(2.5, 1.5));
+        let [left, low] = view.to_pixels(Vec2::new(-2.5, -0.5));
+        let [right, high] = view.to_pixels(Vec2::new(2.5, 1.5));
         assert!(0.0 <= left && left < right && right <= 200.0 && 0.0 <= high && high < low && low <= 100.0);
-        assert_eq!(view.place(Vec2::new(0.0, 0.5)), [100.0, 50.0]);
+        assert_eq!(view.to_pixels(Vec2::new(0.0, 0.5)), [100.0, 50.0]);
     }
 
     #[test]
     fn the_scenes_viewport_wins_and_zero_means_fit() {
         let own = view(&scene(r#"<viewport cx="1" cy="2" size="5"/>"#), &[0.0; 4]);
-        assert_eq!((own.place(Vec2::new(1.0, 2.0)), own.length(5.0)), ([100.0, 50.0], 50.0));
+        assert_eq!((own.to_pixels(Vec2::new(1.0, 2.0)), own.to_pixel_length(5.0)), ([100.0, 50.0], 50.0));
         let positions = [-2.0, 0.0, 2.0, 1.0];
         assert_eq!(view(&scene(r#"<viewport cx="1" cy="2" size="0"/>"#), &positions), view(&scene(""), &positions));
     }
@@ -181,7 +182,7 @@ mod tests {
             assert!(view.scale > 0.0 && view.scale.is_finite(), "{positions:?}");
         }
         let empty = Scene { particles: Vec::new(), ..scene("") };
-        assert_eq!(view(&empty, &[]).length(1.0), 50.0);
+        assert_eq!(view(&empty, &[]).to_pixel_length(1.0), 50.0);
     }
 
     #[test]
@@ -190,7 +191,7 @@ mod tests {
         let start = Extent::for_scene(&scene, &[-2.0, 0.0, 2.0, 1.0]);
         let mut run = start;
         run.add(&scene, &[-2.0, 0.0, 5000.0, 1.0]);
-        assert_eq!(run.limited_to(&start).high.x, 10.0);
-        assert_eq!(start.limited_to(&start), start);
+        assert_eq!(run.limit_to(&start).high.x, 10.0);
+        assert_eq!(start.limit_to(&start), start);
     }
 }

@@ -1,5 +1,5 @@
 //! Annotations of GitHub Actions: workflow commands that show a title and a text next to a job.
-use crate::foreign::one_line;
+use crate::untrusted_text::to_one_line;
 
 /// Returns one annotation. The level is `error` or `warning`.
 pub(crate) fn render_annotation(level: &str, title: &str, words: &str) -> String {
@@ -14,7 +14,7 @@ pub(crate) fn join_annotation<'a>(level: &str, title: &str, lines: impl IntoIter
 
 /// Escapes the text after `::` in a workflow command.
 fn escape_data(text: &str) -> String {
-    one_line(text).replace('%', "%25")
+    to_one_line(text).replace('%', "%25")
 }
 
 /// Escapes the value of a property in a workflow command.

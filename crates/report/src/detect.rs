@@ -6,7 +6,7 @@ pub use overlap::Overlap;
 
 use super::{
     number::{format_exact, format_tidy},
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Cell, Table},
     view::{WrittenNumber, numbers, to_document, view},
 };
@@ -25,7 +25,7 @@ pub const DETECT_SCHEMA: u32 = 1;
 
 /// The place in a scene's run at which a pair was examined.
 #[derive(Debug, Clone, Copy)]
-pub struct Place<'a> {
+pub struct CallPlace<'a> {
     /// The name of the scene, as the user typed it.
     pub scene: &'a str,
     /// The name of the trace, as the user typed it; `None` for the reference's own run.
@@ -51,7 +51,7 @@ pub struct Detect<'a> {
     /// The reference's computation for the pair.
     pub study: &'a Study,
     /// The place in a scene's run at which the pair was examined; `None` if the user typed the numbers.
-    pub place: Option<Place<'a>>,
+    pub place: Option<CallPlace<'a>>,
 }
 
 impl Detect<'_> {
@@ -95,7 +95,7 @@ impl Detect<'_> {
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let study = self.study;
-        let mut text = style.paint(Look::Strong, &self.title()) + "\n";
+        let mut text = style.paint(TextStyle::Strong, &self.title()) + "\n";
         if let Some(place) = &self.place {
             text += &match place.pass {
                 Some(pass) => format!("  pass {} of {}: {}\n", pass.index + 1, place.passes, PassText(pass)),
@@ -112,7 +112,7 @@ impl Detect<'_> {
         let study = self.study;
         let mut text = format!(
             "\n{}\n",
-            style.paint(Look::Strong, "Polynomials in t, the fraction of the step; each must be positive")
+            style.paint(TextStyle::Strong, "Polynomials in t, the fraction of the step; each must be positive")
         );
         for curve in &study.curves {
             text += &polynomial_lines(&curve.role.to_string(), curve, number, style);
@@ -126,7 +126,7 @@ impl Detect<'_> {
             );
         }
         if let Some(place) = self.place.filter(|place| place.trace.is_some() && place.pass.is_some()) {
-            text += &format!("\n{}\n", style.paint(Look::Strong, "What the trace logged"));
+            text += &format!("\n{}\n", style.paint(TextStyle::Strong, "What the trace logged"));
             match place.logged {
                 CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
@@ -138,16 +138,17 @@ impl Detect<'_> {
                             format!(
                                 "  {}: {}\n    {}\n",
                                 curve.role,
-                                style.paint(Look::Good, mark),
+                                style.paint(TextStyle::Good, mark),
                                 format_polynomial(own, format_exact)
                             )
                         } else {
-                            compare_polynomials(&curve.role.to_string(), expected, own, style)
+                            describe_logged_polynomial(&curve.role.to_string(), expected, own, style)
                         };
                     }
                 }
                 CallLog::Nothing => {
-                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing is logged for this pair in this pass"))
+                    text +=
+                        &format!("  {}\n", style.paint(TextStyle::Bad, "nothing is logged for this pair in this pass"))
                 }
                 CallLog::Unknown => {
                     text +=
@@ -155,9 +156,9 @@ impl Detect<'_> {
                 }
             }
         }
-        text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
+        text += &format!("\n{}\n", style.paint(TextStyle::Strong, "Decision"));
         text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive_intervals, number));
-        let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
+        let look = if study.answer.decision.collides() { TextStyle::Notice } else { TextStyle::Good };
         text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
         text += match study.certain_decision {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
@@ -201,18 +202,18 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
 
 /// Describes a polynomial of the trace. If it differs from the right one by more than a factor, both are listed power
 /// by power.
-fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
+fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
-        return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
+        return format!("  {role}: {}\n", style.paint(TextStyle::Bad, "missing"));
     }
     let factor = find_factor(expected, own);
     let wrong = find_differing_powers(expected, own, factor);
     let same = expected == own;
     let (look, mark) = match wrong.is_empty() {
-        true if same => (Look::Good, "the same".to_owned()),
-        true if factor == 1.0 => (Look::Good, "the same except for rounding".to_owned()),
-        true => (Look::Good, format!("the same except for the factor {}, which is right", format_exact(factor))),
-        false => (Look::Bad, "differs".to_owned()),
+        true if same => (TextStyle::Good, "the same".to_owned()),
+        true if factor == 1.0 => (TextStyle::Good, "the same except for rounding".to_owned()),
+        true => (TextStyle::Good, format!("the same except for the factor {}, which is right", format_exact(factor))),
+        false => (TextStyle::Bad, "differs".to_owned()),
     };
     let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), format_polynomial(own, format_exact));
     if wrong.is_empty() {
@@ -226,7 +227,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
                 .checked_sub(power + 1)
                 .map_or_else(|| "none".to_owned(), |place| format_exact(list[place] * factor))
         };
-        let mark = if wrong.contains(&power) { Cell::with_look(Look::Bad, "<- differs") } else { "".into() };
+        let mark = if wrong.contains(&power) { Cell::with_style(TextStyle::Bad, "<- differs") } else { "".into() };
         table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
     }
     text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));
@@ -289,7 +290,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
         let words =
             format!("logged without leading coefficients below 1e-12; with them: {}", format_polynomial(all, number));
-        text += &format!("    {}\n", style.paint(Look::Faint, &words));
+        text += &format!("    {}\n", style.paint(TextStyle::Faint, &words));
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
@@ -375,7 +376,7 @@ pub(crate) struct DetectView<'a> {
 view! {
     /// The place in a scene's run at which a pair was examined.
     #[schemars(deny_unknown_fields)]
-    struct PlaceView<'a> from place: Place<'a> {
+    struct PlaceView<'a> from place: CallPlace<'a> {
         /// The name of the scene, as the user typed it.
         scene: &'a str = place.scene,
         /// The name of the trace, as the user typed it; null for the reference's own run.

@@ -1,14 +1,14 @@
 //! The report of `explain`. It lists the likely mistakes of a program, for each trace and for all traces together.
 use super::{
     case::Case,
-    explain::{ExplanationView, lines},
+    explain::{ExplanationView, explanation_texts},
     number::format_count,
     smallest::{self, SmallestView},
-    style::{Look, Style},
+    style::{Style, TextStyle},
     view::{FindingView, to_document, view},
     words::{describe_first, describe_located},
 };
-use crate::foreign::one_line;
+use crate::untrusted_text::to_one_line;
 use fosssim_findings::{
     Book, disclosure::DisclosedFinding, located_failure::LocatedFailure, smallest_scene::SmallestScene,
 };
@@ -57,8 +57,8 @@ impl Diagnosis {
             text += "These scenes show single formulas. A suite has more: fosssim-oracle grade PROGRAM\n\n";
         }
         if let Some(found) = &self.located {
-            let heading = style.paint(Look::Strong, "Where it fails");
-            let _ = writeln!(text, "{heading}\n  {}\n", one_line(&describe_located(found)));
+            let heading = style.paint(TextStyle::Strong, "Where it fails");
+            let _ = writeln!(text, "{heading}\n  {}\n", to_one_line(&describe_located(found)));
         }
         let mut likely = 0;
         for common in &self.common {
@@ -74,7 +74,7 @@ impl Diagnosis {
                 }
             };
             let heading = format!("{most} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
-            let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, &heading));
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
         }
@@ -100,7 +100,8 @@ impl Diagnosis {
 }
 
 fn render_head(case: &Case, style: Style) -> String {
-    let verdict = if case.accepted { style.paint(Look::Good, "right") } else { style.paint(Look::Bad, "wrong") };
+    let verdict =
+        if case.accepted { style.paint(TextStyle::Good, "right") } else { style.paint(TextStyle::Bad, "wrong") };
     let mut line = format!("{verdict}  {}", case.scene);
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
@@ -122,7 +123,7 @@ fn render_single(case: &Case, style: Style) -> String {
             text,
             "{}",
             style.paint(
-                Look::Good,
+                TextStyle::Good,
                 "There is nothing to explain: the fair rules accept the \
             trace."
             )
@@ -146,7 +147,7 @@ fn render_single(case: &Case, style: Style) -> String {
 }
 
 fn render_mistakes(explanations: &[Explanation], style: Style) -> String {
-    lines(explanations, style).iter().map(|line| format!("  {line}\n")).collect()
+    explanation_texts(explanations, style).iter().map(|line| format!("  {line}\n")).collect()
 }
 
 view! {

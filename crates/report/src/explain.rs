@@ -17,7 +17,7 @@ const MAX_LISTED: usize = 3;
 /// Returns the lines of a report about explanations, the likeliest first. Lines that belong to a sentence are below it
 /// and indented by two blanks.
 #[must_use]
-pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
+pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct ExplanationParts {
     /// Whether the explanation is a likely mistake; otherwise it is only an observation.
     pub(crate) is_likely: bool,
     /// The sentence that names the mistake.
-    pub(crate) what: String,
+    pub(crate) sentence: String,
     /// The sentence about how many wrong steps or polynomials the mistake reproduces.
     pub(crate) evidence: Option<String>,
     /// Lines with the exact form, and the mistakes that can't be distinguished from this one.
@@ -68,12 +68,13 @@ impl ExplanationParts {
             (ExplanationTopic::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
-        let mut details: Vec<String> = list_details(explanation).iter().map(|line| style.set(line)).collect();
+        let mut details: Vec<String> =
+            list_details(explanation).iter().map(|line| style.format_formulas(line)).collect();
         if !explanation.is_unfinished() {
             details.extend(describe_others(&explanation.same_as));
         }
         let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
-        Self { is_likely, what: describe(explanation), evidence, details, example }
+        Self { is_likely, sentence: describe(explanation), evidence, details, example }
     }
 }
 
@@ -88,7 +89,8 @@ fn describe_evidence(reproduced: u64, samples: u64) -> String {
 }
 
 fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
-    let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::new(explanation, style);
+    let ExplanationParts { is_likely, sentence: what, evidence, details, example } =
+        ExplanationParts::new(explanation, style);
     let likely = if is_likely { "likely mistake: " } else { "" };
     let evidence = evidence.map_or_else(String::new, |evidence| format!(" ({evidence})"));
     let mut lines = vec![format!("{likely}{what}{evidence}")];
@@ -121,8 +123,9 @@ fn list_sentences(sentences: &[String]) -> String {
 
 fn example_lines(example: &Example, style: Style) -> Vec<String> {
     let given = example.given.iter();
-    let given: Vec<String> =
-        given.map(|given| format!("{} = {}", style.set(&to_key(&given.input)), format_vector(&given.value))).collect();
+    let given: Vec<String> = given
+        .map(|given| format!("{} = {}", style.format_formulas(&to_key(&given.input)), format_vector(&given.value)))
+        .collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, describe_place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
@@ -253,7 +256,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
-        insta::assert_snapshot!(lines(&explanations(), Style::Plain).join("\n"), @r"
+        insta::assert_snapshot!(explanation_texts(&explanations(), Style::Plain).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Cannot be distinguished here from 5 other formulas
@@ -271,7 +274,7 @@ pub(crate) mod tests {
             render_sentence(&explanations()[1..]).as_deref(),
             Some("No simple mistake explains the polynomial: particle-edge overlap.")
         );
-        assert_eq!((lines(&[], Style::Plain), render_sentence(&[])), (Vec::new(), None));
+        assert_eq!((explanation_texts(&[], Style::Plain), render_sentence(&[])), (Vec::new(), None));
         let known = |key: &str| {
             let key = key.to_owned();
             Explanation { key, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
@@ -302,12 +305,12 @@ pub(crate) mod tests {
 
     #[test]
     fn hints_decide_what_is_there_to_be_shown() {
-        let told = |hints: Hints| lines(&limit_explanations(hints, explanations()), Style::Plain);
+        let told = |hints: Hints| explanation_texts(&limit_explanations(hints, explanations()), Style::Plain);
         assert!(told(Hints::Where).is_empty());
         let what = told(Hints::What);
         assert_eq!(what.len(), 2);
         assert!(!what.join("\n").contains("weight") && !what.join("\n").contains("0.125"), "{what:?}");
-        assert_eq!(told(Hints::Full), lines(&explanations(), Style::Plain));
+        assert_eq!(told(Hints::Full), explanation_texts(&explanations(), Style::Plain));
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! The formats of grades, with their names, their contents and their readers.
 use crate::{
-    grade::{Text, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
+    grade::{Text, csv_table, github, gradescope, json, junit, list_not_graded, prairielearn},
     page::{Audience, GradePage},
     style::Style,
 };
@@ -53,7 +53,7 @@ formats! {
     /// Text for people at a terminal.
     Text "text" true
         |grades, passed_over| {
-            Text::default().render(grades) + &not_graded(grades, class_entries(grades, passed_over), Style::Plain)
+            Text::default().render(grades) + &list_not_graded(grades, class_entries(grades, passed_over), Style::Plain)
         };
     /// JSON in this program's own form, with a version (`schemas/grade.schema.json`).
     Json "json" true |grades, passed_over| json::render(grades, class_entries(grades, passed_over));
@@ -66,12 +66,12 @@ formats! {
     /// Annotations for GitHub Actions.
     Github "github" true
         |grades, passed_over| {
-            github::render_annotations(grades) + &github::passed_over(class_entries(grades, passed_over))
+            github::render_annotations(grades) + &github::warn_of_skipped(class_entries(grades, passed_over))
         };
     /// A table for spreadsheets with one row per scene.
     Markdown "markdown" true
         |grades, passed_over| {
-            github::render_summary(grades) + &github::list_of_passed_over(class_entries(grades, passed_over))
+            github::render_summary(grades) + &github::list_skipped(class_entries(grades, passed_over))
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::render_scenes;

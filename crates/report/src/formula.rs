@@ -4,10 +4,10 @@
 ///
 /// ```
 /// let line = "t^2 lacks -4 e h, with e = d21.x21.";
-/// assert_eq!(fosssim_report::formula::with_signs(line), "t² lacks −4 e h, with e = Δx₂₁·x₂₁.");
+/// assert_eq!(fosssim_report::formula::to_mathematical_signs(line), "t² lacks −4 e h, with e = Δx₂₁·x₂₁.");
 /// ```
 #[must_use]
-pub fn with_signs(line: &str) -> String {
+pub fn to_mathematical_signs(line: &str) -> String {
     let mut out = String::with_capacity(line.len());
     let mut rest = line;
     while let Some(first) = rest.chars().next() {
@@ -93,7 +93,7 @@ mod tests {
             ("collisions.empty() ends the loop.", "collisions.empty() ends the loop."),
             ("dx_cm / dt; dx = qe - qs", "Δx_cm / dt; Δx = qe − qs"),
         ] {
-            assert_eq!(with_signs(line), expected);
+            assert_eq!(to_mathematical_signs(line), expected);
         }
     }
 
@@ -105,8 +105,8 @@ mod tests {
             line.split(|c: char| !c.is_ascii_alphabetic()).filter(is_word).map(str::to_owned).collect()
         };
         for row in CATALOGUE {
-            assert_eq!(words(&with_signs(row.term)), words(row.term), "{}", row.id);
-            assert!(!with_signs(row.term).contains("^2"), "{}", row.id);
+            assert_eq!(words(&to_mathematical_signs(row.term)), words(row.term), "{}", row.id);
+            assert!(!to_mathematical_signs(row.term).contains("^2"), "{}", row.id);
         }
     }
 }

@@ -14,28 +14,28 @@
 #![forbid(unsafe_code)]
 
 pub(crate) mod annotation;
-pub mod by_hand;
+pub mod calculation;
 pub mod case;
 pub mod check;
 pub mod describe;
 pub mod detect;
 pub mod diagnosis;
 pub mod explain;
-pub mod foreign;
 pub mod formats;
 pub mod formula;
 pub mod grade;
 pub mod number;
 pub mod page;
-pub mod problems;
 pub mod scene;
+pub mod scene_problems;
 pub mod schemas;
-mod share;
 pub mod simulate;
 pub mod smallest;
+mod step_share;
 pub mod style;
 pub mod table;
 pub mod trace;
+pub mod untrusted_text;
 pub mod view;
 pub mod words;
 pub mod wrap;

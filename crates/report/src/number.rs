@@ -66,7 +66,7 @@ pub fn format_count(value: u64, noun: &str) -> String {
 /// from the first that differs. Also returns the position from which the texts differ; `None` if they are equal.
 #[must_use]
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
-    let texts = in_one_notation(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
+    let texts = format_alike(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
@@ -78,7 +78,7 @@ pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>
 
 /// Formats both values with as many decimals as needed. If they are very large or very small, both have the same power
 /// of ten. Returns `None` if no notation fits both.
-fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
+fn format_alike(expected: f64, actual: f64) -> Option<(String, String)> {
     let most = expected.abs().max(actual.abs());
     let power = |value: f64| -> Option<i32> { format!("{value:e}").split_once('e')?.1.parse().ok() };
     if !(expected.is_finite() && actual.is_finite()) || most == 0.0 {

@@ -1,10 +1,10 @@
 //! The list of scenes, one line for each.
 use super::{
     number::format_count,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     wrap,
 };
-use crate::foreign::one_line;
+use crate::untrusted_text::to_one_line;
 use fosssim_model::scene::Scene;
 
 /// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
@@ -13,8 +13,9 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::count_columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - wrap::count_columns(name));
-        let size = style.paint(Look::Faint, &format!("({})", describe_size(scene)));
-        let words = scene.description.as_deref().map(|text| one_line(first_sentence(text)) + " ").unwrap_or_default();
+        let size = style.paint(TextStyle::Faint, &format!("({})", describe_size(scene)));
+        let words =
+            scene.description.as_deref().map(|text| to_one_line(first_sentence(text)) + " ").unwrap_or_default();
         format!("asset:{name}{blanks}  {words}{size}\n")
     };
     scenes.iter().map(line).collect()

@@ -8,14 +8,14 @@ use serde_json::Value;
 #[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
     [
-        ("check", schema_of::<CheckView<'_>>("check --format json")),
-        ("detect", schema_of::<DetectView<'_>>("detect --format json")),
-        ("explain", schema_of::<DiagnosisView<'_>>("explain --format json")),
-        ("grade", schema_of::<GradeDocument>("grade --format json")),
+        ("check", command_schema::<CheckView<'_>>("check --format json")),
+        ("detect", command_schema::<DetectView<'_>>("detect --format json")),
+        ("explain", command_schema::<DiagnosisView<'_>>("explain --format json")),
+        ("grade", command_schema::<GradeDocument>("grade --format json")),
     ]
 }
 
-fn schema_of<Document: JsonSchema>(command: &str) -> Schema {
+fn command_schema<Document: JsonSchema>(command: &str) -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(join_lines));
     let generator = settings.into_generator();
     let mut schema = generator.into_root_schema_for::<Document>();

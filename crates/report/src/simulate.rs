@@ -1,7 +1,7 @@
 //! The summary that `simulate` prints.
 use super::{
     number::{count, format_count},
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Table},
     view::SCHEMA,
 };
@@ -23,9 +23,9 @@ pub struct SimulationSummary<'a> {
     /// The number of events of each kind, in all steps together.
     pub counts: EventCounts,
     /// The size of the trace that was written.
-    pub written: WrittenTrace,
+    pub written_trace: WrittenTrace,
     /// The counts of root searches, if certificates were audited.
-    pub audited: Option<SearchCounts>,
+    pub audit_counts: Option<SearchCounts>,
 }
 
 impl SimulationSummary<'_> {
@@ -63,16 +63,16 @@ impl SimulationSummary<'_> {
         };
         table.row(["rigid failsafes".into(), count(counts.failsafes).into(), zones.into()]);
         table.row(["polynomials".into(), count(counts.polynomials).into(), "".into()]);
-        let records = format!("in {}", format_count(self.written.records, "record"));
-        table.row(["bytes".into(), count(self.written.bytes).into(), records.into()]);
-        if let Some(searches) = self.audited {
+        let records = format!("in {}", format_count(self.written_trace.records, "record"));
+        table.row(["bytes".into(), count(self.written_trace.bytes).into(), records.into()]);
+        if let Some(searches) = self.audit_counts {
             let excluded = format!("{} excluded by a certificate", count(searches.excluded));
             table.row(["root searches".into(), count(searches.searched).into(), excluded.into()]);
             table.row(["disagreements".into(), count(searches.disagreements).into(), "".into()]);
         }
         let end = self.output.map_or_else(|| "; nothing was kept".to_owned(), |name| format!(" into {name}"));
         let heading = format!("Simulated {}{end}", self.scene);
-        format!("{}\n{}", style.paint(Look::Strong, &heading), table.render(style))
+        format!("{}\n{}", style.paint(TextStyle::Strong, &heading), table.render(style))
     }
 
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
@@ -101,9 +101,9 @@ impl SimulationSummary<'_> {
             "failsafes": counts.failsafes,
             "largest_zone": counts.largest_zone,
             "polynomials": counts.polynomials,
-            "records": self.written.records,
-            "bytes": self.written.bytes,
-            "root_searches": self.audited.map(|searches| json!({
+            "records": self.written_trace.records,
+            "bytes": self.written_trace.bytes,
+            "root_searches": self.audit_counts.map(|searches| json!({
                 "calls": searches.calls,
                 "searched": searches.searched,
                 "excluded": searches.excluded,

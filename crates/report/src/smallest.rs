@@ -1,10 +1,10 @@
 //! The smallest scene on which a program is still wrong for the same reason, with the differing values and the
 //! computation by hand.
 use crate::{
-    explain::{ExplanationView, lines},
-    foreign::{quote, strip_control_characters},
+    explain::{ExplanationView, explanation_texts},
     number::format_count,
-    style::{Look, Style},
+    style::{Style, TextStyle},
+    untrusted_text::{quote, strip_control_characters},
     view::{FindingView, view},
     words::describe_first,
 };
@@ -23,8 +23,8 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 #[must_use]
 pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
-    let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
-    let told = lines(&explanations[..explanations.len().min(1)], style);
+    let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));
+    let told = explanation_texts(&explanations[..explanations.len().min(1)], style);
     let first = first.as_ref().filter(|_| told.is_empty()).map(describe_first);
     let causes = note.iter().cloned().chain(first).chain(told).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];

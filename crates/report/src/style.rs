@@ -15,7 +15,7 @@ pub enum Style {
 
 /// The purpose of a piece of text, which determines its color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
+pub enum TextStyle {
     /// A verdict or a value that is right.
     Good,
     /// A verdict or a value that is wrong.
@@ -31,20 +31,20 @@ pub enum Look {
 impl Style {
     /// Returns a text with the terminal codes for its color. Padding must be added before this call.
     #[must_use]
-    pub fn paint(self, look: Look, text: &str) -> String {
+    pub fn paint(self, look: TextStyle, text: &str) -> String {
         let code = match (self, look) {
             (Self::Plain, _) => return text.to_owned(),
-            (_, Look::Good) => "1;32",
-            (_, Look::Bad) => "1;31",
-            (_, Look::Notice) => "33",
-            (_, Look::Strong) => "1",
-            (_, Look::Faint) => "2",
+            (_, TextStyle::Good) => "1;32",
+            (_, TextStyle::Bad) => "1;31",
+            (_, TextStyle::Notice) => "33",
+            (_, TextStyle::Strong) => "1",
+            (_, TextStyle::Faint) => "2",
         };
         format!("\x1b[{code}m{text}\x1b[0m")
     }
 
     /// Returns a line in which formulas are written as this style requires.
-    pub(crate) fn set(self, line: &str) -> String {
-        if self == Self::ColorAndSigns { formula::with_signs(line) } else { line.to_owned() }
+    pub(crate) fn format_formulas(self, line: &str) -> String {
+        if self == Self::ColorAndSigns { formula::to_mathematical_signs(line) } else { line.to_owned() }
     }
 }

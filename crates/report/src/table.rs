@@ -1,6 +1,6 @@
 //! A table of text with aligned columns.
 use super::{
-    style::{Look, Style},
+    style::{Style, TextStyle},
     wrap::count_columns,
 };
 
@@ -8,19 +8,19 @@ use super::{
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
     text: String,
-    look: Option<Look>,
+    style: Option<TextStyle>,
 }
 
 impl Cell {
     /// Creates a cell whose text has a style.
-    pub fn with_look(look: Look, text: impl Into<String>) -> Self {
-        Self { text: text.into(), look: Some(look) }
+    pub fn with_style(look: TextStyle, text: impl Into<String>) -> Self {
+        Self { text: text.into(), style: Some(look) }
     }
 }
 
 impl<T: Into<String>> From<T> for Cell {
     fn from(text: T) -> Self {
-        Self { text: text.into(), look: None }
+        Self { text: text.into(), style: None }
     }
 }
 
@@ -54,7 +54,7 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
 
     /// Appends a row whose cells are headings.
     pub fn heading(&mut self, titles: [&str; COLUMNS]) {
-        self.row(titles.map(|title| Cell::with_look(Look::Faint, title)));
+        self.row(titles.map(|title| Cell::with_style(TextStyle::Faint, title)));
     }
 
     /// Renders each row as a line, indented by two blanks. There are three blanks between columns, and none at the ends
@@ -73,7 +73,7 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
                 let (before, after) = if align == Align::Right { (blanks, 0) } else { (0, blanks) };
                 if !cell.text.is_empty() {
                     line += &" ".repeat(gap + before);
-                    line += &cell.look.map_or_else(|| cell.text.clone(), |look| style.paint(look, &cell.text));
+                    line += &cell.style.map_or_else(|| cell.text.clone(), |look| style.paint(look, &cell.text));
                     gap = after + 3;
                 } else {
                     gap += width + 3;
@@ -95,14 +95,14 @@ mod tests {
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
         table.heading(["name", "n", "note"]);
         table.row(["a".into(), "100".into(), "".into()]);
-        table.row(["longer".into(), "".into(), Cell::with_look(Look::Bad, "no")]);
+        table.row(["longer".into(), "".into(), Cell::with_style(TextStyle::Bad, "no")]);
         assert_eq!(table.render(Style::Plain), "  name       n   note\n  a        100\n  longer         no\n");
     }
 
     #[test]
     fn colors_do_not_move_columns() {
         let mut table = Table::new([Align::Right, Align::Left]);
-        table.row([Cell::with_look(Look::Good, "1"), "x".into()]);
+        table.row([Cell::with_style(TextStyle::Good, "1"), "x".into()]);
         table.row(["10".into(), "y".into()]);
         assert_eq!(table.render(Style::Color), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
     }

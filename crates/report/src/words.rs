@@ -3,7 +3,7 @@ pub mod explanation;
 
 mod located;
 
-use crate::{describe::no_result, number::format_count, share};
+use crate::{describe::no_result, number::format_count, step_share};
 pub use located::describe_located;
 
 use fosssim_findings::{
@@ -29,7 +29,7 @@ const NOT_FOUND_CODE: i32 = 127;
 #[must_use]
 pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
-        Reason::Right => share::describe_right(result.steps, spell_number),
+        Reason::Right => step_share::describe_right(result.steps, spell_number),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
@@ -155,7 +155,7 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         WrongTrace::Nothing => "the trace contains no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
-            format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, spell_number))
+            format!("{}, first step {first}: {kind}", step_share::describe_wrong(*wrong, steps, spell_number))
         }
         WrongTrace::Damaged => "the trace is damaged".to_owned(),
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),

@@ -15,7 +15,7 @@ pub fn wrap(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
         let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
-        push_broken(&mut result, line, width);
+        push_wrapped(&mut result, line, width);
         result += end;
     }
     result
@@ -41,7 +41,7 @@ pub fn count_columns(text: &str) -> usize {
         .sum()
 }
 
-fn push_broken(result: &mut String, line: &str, width: usize) {
+fn push_wrapped(result: &mut String, line: &str, width: usize) {
     let body = line.trim_start_matches(' ');
     if count_columns(line) <= width || body.starts_with("$ ") {
         *result += line;

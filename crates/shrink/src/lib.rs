@@ -45,5 +45,5 @@ mod step_starts;
 mod tests;
 
 pub use reason::{Observation, WrongReason};
-pub use reducer::{Holds, SmallScene, reduce};
+pub use reducer::{RunProgram, SmallScene, reduce};
 pub use step_starts::step_starts;

@@ -57,14 +57,14 @@ impl WrongReason {
         }
         let is_likely = |one: &Explanation| one.is_about_program() && (one.is_complete() || one.names_stage());
         let likely = explanations.into_iter().find(is_likely).map(|one| Self::Mistake(Box::new(one)));
-        likely.or_else(|| is_plain(detail).then_some(fault))
+        likely.or_else(|| is_clear_finding(detail).then_some(fault))
     }
 
     /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
     /// is the named mistake, and not by a decision that round-off may change. With `is_alone`, the reason must be the
     /// first one that the scene shows, without other mistakes that have the same effect.
     #[must_use]
-    pub fn holds(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
+    pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, seen) else { return false };
         let explanations = || diagnose::explain(scene, &seen.trace);
         match (self, detail) {
@@ -84,7 +84,7 @@ impl WrongReason {
                 if is_alone { first == Some(mistake.statement()) } else { is_named_in(mistake, &found) }
             }
             (Self::NotFinite, Some(_)) => explanations().iter().any(Explanation::is_not_finite),
-            (_, detail) => fault == *self && detail.is_none_or(is_plain),
+            (_, detail) => fault == *self && detail.is_none_or(is_clear_finding),
         }
     }
 }
@@ -106,13 +106,13 @@ fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option
     let first = fair.findings.first_divergence?;
     // Behind a plain fault, decisions about the program's own positions may be borderline where the reference's are
     // not.
-    let has_margin = fair.borderline == 0 || (is_plain(first.detail) && is_clear(scene));
+    let has_margin = fair.borderline == 0 || (is_clear_finding(first.detail) && is_clear(scene));
     let finding = WrongReason::Finding(first.kind(), first.detail.pair().map(|pair| pair.kind));
     has_margin.then_some((finding, Some(first.detail)))
 }
 
 /// Returns whether a finding is about more than round-off. A NaN is plain as well.
-const fn is_plain(detail: FindingDetail) -> bool {
+const fn is_clear_finding(detail: FindingDetail) -> bool {
     use FindingDetail::{Coefficient, Position, Velocity, WrongNormal};
     match detail {
         Position { residual, .. }

@@ -22,11 +22,11 @@ pub struct SmallScene {
 
 /// A function that runs the program, and returns whether the program is wrong for the reason, and for no other one if
 /// that is requested. The result `None` ends the search.
-pub type Holds<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
+pub type RunProgram<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
 /// Begins with the first of these steps' scenes on which the program is wrong for the reason alone, or else for the
 /// reason together with others, and makes it smaller, or returns `None` if there is no such scene.
-pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut Holds<'_>) -> Option<SmallScene> {
+pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut RunProgram<'_>) -> Option<SmallScene> {
     for is_alone in [true, false] {
         for (step, scene) in beginnings {
             if holds(scene, is_alone)? {
@@ -52,7 +52,7 @@ pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut H
 struct Search<'a, 'b> {
     assignment: Assignment,
     is_alone: bool,
-    holds: &'a mut Holds<'b>,
+    holds: &'a mut RunProgram<'b>,
     scene: Scene,
     size: Size,
     /// The number of warnings, and of parts that programs of the assignment do not support.
@@ -72,7 +72,7 @@ impl Search<'_, '_> {
                 let mut index = 0;
                 while let Some(attempts) = reduction(&self.scene, self.assignment, index) {
                     // After a successful attempt, the same kind is tried again.
-                    index += usize::from(!self.take(attempts)?);
+                    index += usize::from(!self.take_smaller(attempts)?);
                 }
             }
             if self.size == size {
@@ -83,7 +83,7 @@ impl Search<'_, '_> {
 
     /// Takes the first of these scenes that is smaller, at least as sound and clear, and on which the program is wrong
     /// for the reason. Returns whether there is one, or `None` if the search must end.
-    fn take(&mut self, attempts: Vec<Scene>) -> Option<bool> {
+    fn take_smaller(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
             if measure_size(&scene) >= self.size {
                 continue;

@@ -108,7 +108,7 @@ pub(crate) fn measure_size(scene: &Scene) -> Size {
     };
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
     let is_small = scene.particles.len().max(scene.step_count() as usize) <= MAX_SIMULATED_SIZE;
-    let (hits, end) = if is_small { run(scene).unwrap_or_default() } else { Default::default() };
+    let (hits, end) = if is_small { simulate(scene).unwrap_or_default() } else { Default::default() };
     let hits = hits.iter().filter(|(_, collides)| *collides).count();
     let long: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
@@ -124,7 +124,7 @@ fn count_digits(value: f64) -> usize {
 
 /// Returns whether the reference has a result, and round-off cannot change the result.
 pub(crate) fn is_clear(scene: &Scene) -> bool {
-    let Some((decisions, end)) = run(scene) else { return false };
+    let Some((decisions, end)) = simulate(scene) else { return false };
     (1..=2_usize).all(|seed| {
         let mut shifted = scene.clone();
         for (index, (_, value)) in list_numbers(&mut shifted).into_iter().enumerate().skip(1) {
@@ -133,7 +133,7 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
             *value += if is_up { NUMBER_SHIFT } else { -NUMBER_SHIFT } * (1.0 + value.abs());
         }
         let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= NUMBER_SHIFT * MAX_GROWTH * (1.0 + one.abs());
-        run(&shifted).is_some_and(|(others, other)| others == decisions && end.iter().zip(&other).all(is_near))
+        simulate(&shifted).is_some_and(|(others, other)| others == decisions && end.iter().zip(&other).all(is_near))
     })
 }
 
@@ -141,7 +141,7 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
 type RunResult = (Vec<(Pair, bool)>, Vec<f64>);
 
 /// Runs the reference, or returns `None` if a step has no result.
-pub(crate) fn run(scene: &Scene) -> Option<RunResult> {
+pub(crate) fn simulate(scene: &Scene) -> Option<RunResult> {
     #[derive(Default)]
     struct Decisions(Vec<(Pair, bool)>);
     impl Observer for Decisions {

@@ -33,7 +33,7 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
         let seen = run(&scene, student);
         let Some(reason) = WrongReason::first_reason(&scene, &seen) else { continue };
         let steps: Vec<u32> = (1..=scene.step_count()).collect();
-        let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
+        let mut holds = |scene: &Scene, is_alone| Some(reason.is_reproduced(scene, &run(scene, student), is_alone));
         let found = reduce(&step_starts(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
         return (reason, found);
     }
@@ -59,10 +59,10 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         assert_eq!((scene.step_count(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
         assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
         // The result can be computed by hand, too: 0.375, but no 17 digits.
-        let (_, end) = size::run(scene).expect("a result");
+        let (_, end) = size::simulate(scene).expect("a result");
         let short = |value: &f64| value.to_string().len() < 9;
         assert!(assignment == T1M3 || end.iter().all(short), "{mistake}: {end:?}");
-        assert!(reason.holds(scene, &run(scene, student), false), "{mistake}");
+        assert!(reason.is_reproduced(scene, &run(scene, student), false), "{mistake}");
         assert!(scene.unknown_features(assignment).next().is_none(), "{mistake}");
         for right in [Student::default(), Student::default().with_right_approach()] {
             assert_eq!(WrongReason::first_reason(scene, &run(scene, right)), None, "{mistake}");
@@ -75,7 +75,7 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let student = Student::new(Some(find("gravity-doubled").expect("a row").mistake));
     let reason = WrongReason::first_reason(scene, &run(scene, student)).expect("wrong");
-    let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
+    let mut holds = |scene: &Scene, is_alone| Some(reason.is_reproduced(scene, &run(scene, student), is_alone));
     let begin = step_starts(scene, &run(scene, student).trace, &[1]);
     let all = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
     let mut runs = 0..2;
@@ -83,7 +83,7 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let some = reduce(&begin, Assignment::T1M1, &mut few).expect("one");
     assert!(all.is_minimal && !some.is_minimal);
     assert!(size::measure_size(&all.scene) < size::measure_size(&some.scene));
-    assert!(reason.holds(&some.scene, &run(&some.scene, student), false));
+    assert!(reason.is_reproduced(&some.scene, &run(&some.scene, student), false));
 }
 
 /// A program that never ends shows it on any scene: one body is tried before all else.
@@ -102,10 +102,10 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let seen = |ended| Observation { trace: Vec::new(), ended };
     let reason = |ended| WrongReason::first_reason(scene, &seen(ended)).expect("wrong");
-    assert!(reason(Signalled(11)).holds(scene, &seen(Signalled(11)), false));
-    assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8)), false));
-    assert!(reason(CpuLimit).holds(scene, &seen(WallLimit), false));
-    assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit), false));
+    assert!(reason(Signalled(11)).is_reproduced(scene, &seen(Signalled(11)), false));
+    assert!(!reason(Signalled(11)).is_reproduced(scene, &seen(Signalled(8)), false));
+    assert!(reason(CpuLimit).is_reproduced(scene, &seen(WallLimit), false));
+    assert!(!reason(CpuLimit).is_reproduced(scene, &seen(MemoryLimit), false));
     assert_eq!(WrongReason::first_reason(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
 }
 

@@ -10,7 +10,7 @@ use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// Returns the help text of `--format`, for the formats that the command accepts.
-fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
+fn format_help(takes: impl Fn(Format) -> bool) -> String {
     format!("A report: {}; with =FILE, written to a file", Format::names(takes))
 }
 
@@ -19,11 +19,11 @@ fn list_built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }
 
-fn help_of_suite() -> String {
+fn suite_help() -> String {
     format!("The suite: a file, or a built-in one ({})", list_built_in())
 }
 
-fn help_of_built_in() -> String {
+fn built_in_help() -> String {
     format!("A built-in suite ({}), instead of the commented template", list_built_in())
 }
 
@@ -52,7 +52,7 @@ pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
     pub(in crate::cli) programs: Vec<PathBuf>,
-    #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
+    #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = suite_help())]
     pub(in crate::cli) suite: String,
     /// The rule books; by default the suite's.
     #[arg(long, value_parser = rules_parser())]
@@ -60,7 +60,7 @@ pub(in crate::cli) struct GradeArguments {
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: Option<PathBuf>,
-    #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
+    #[arg(long, value_name = "FORMAT[=FILE]", help = format_help(|_| true))]
     pub(in crate::cli) format: Vec<String>,
     /// The reader of the reports. Staff see everything; students see what the suite's hints allow, without hidden
     /// groups. The output folder gets pages of both kinds; those for students are in students/.
@@ -186,7 +186,7 @@ pub(in crate::cli) struct MergeArguments {
     /// The folder for the results. The default is the folder that contains the shards, if you name only one.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: Option<PathBuf>,
-    #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
+    #[arg(long, value_name = "FORMAT[=FILE]", help = format_help(Format::takes_several))]
     pub(in crate::cli) format: Vec<String>,
     /// The reader of HTML pages. Pages for students are written to students/, next to those for staff.
     #[arg(long = "for", value_parser = audience_parser(), value_name = "READER", default_value = "staff")]
@@ -212,7 +212,7 @@ pub(in crate::cli) enum SuiteCommand {
 Example:
   fosssim-oracle suite init --output course.toml")]
 pub(in crate::cli) struct SuiteInitArguments {
-    #[arg(help = help_of_built_in())]
+    #[arg(help = built_in_help())]
     pub(in crate::cli) name: Option<String>,
 
     /// The file for the suite, instead of standard output.

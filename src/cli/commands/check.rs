@@ -13,7 +13,7 @@ use crate::{
     },
     report::{
         self,
-        check::{StepChoice, WrongSteps, describe_no_verdict, describe_unread, is_wrong},
+        check::{StepChoice, WrongSteps, describe_no_verdict, describe_unread, needs_explanation},
         number::format_count,
         page,
         style::Style,
@@ -27,20 +27,20 @@ use std::{io::Read, path::Path};
 
 pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let name = &arguments.trace;
-    let scene = input::scene(&arguments.scene)?;
-    let mut trace = input::trace(name)?;
+    let scene = input::read_scene(&arguments.scene)?;
+    let mut trace = input::open_trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // The output is opened first. If it cannot be written, this is reported before the work begins.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
-    let mut wrong = wrong_steps(arguments, &scene)?;
+    let mut wrong = collect_wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.step_count());
     let (options, heard) = (replay_options(arguments), &mut ObserverPair(&mut bar, &mut wrong));
-    let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
+    let examined = examine(&scene.scene, &mut trace.reader, shown.part_to_keep(lasts), &options, heard);
     drop(bar);
     let outcome = &examined.outcome;
-    refuse_unreadable(outcome, &scene, &trace)?;
-    let explanations = if shown.is_explained && is_wrong(outcome) { examined.explain() } else { Vec::new() };
+    reject_unreadable(outcome, &scene, &trace)?;
+    let explanations = if shown.is_explained && needs_explanation(outcome) { examined.explain() } else { Vec::new() };
     let check = report::check::Check {
         scene: &scene.name,
         trace: &trace.name,
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     if lasts && !accepted && std::fs::metadata(name).is_ok_and(is_states_only) {
         console::print_remark(format!("{}\n", words::STATES_ONLY));
     }
-    let evidence = || evidence_of(&examined, name, lasts);
+    let evidence = || gather_evidence(&examined, name, lasts);
     write_report(target, arguments.format, check, &examined, &evidence)?;
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {
@@ -82,7 +82,7 @@ fn write_report(
         CheckFormat::Html => page::examined_page(check, examined, &evidence()),
     };
     match (target, format) {
-        (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),
+        (Some(target), format) => target.finish_and_print(text.as_bytes(), format == CheckFormat::Html),
         (None, CheckFormat::Text) => console::report(&text),
         (None, _) => console::print(&text),
     }
@@ -101,7 +101,7 @@ impl ShownParts {
         Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
 
-    fn keep(&self, lasts: bool) -> KeptPart {
+    fn part_to_keep(&self, lasts: bool) -> KeptPart {
         match (self.is_explained || self.is_drawn, lasts) {
             (false, _) => KeptPart::Nothing,
             (true, false) => KeptPart::Read,
@@ -120,7 +120,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
 }
 
 /// Returns an empty collection for wrong steps, if the report shows wrong steps.
-fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
+fn collect_wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.step_count();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
         bail!("the scene {} has {}; there is no step {step}", scene.name, format_count(steps.into(), "step"));
@@ -135,7 +135,7 @@ fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSt
 }
 
 /// Returns an error if no trace of the scene can have a verdict, or if the trace could not be read to its end.
-fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
+fn reject_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
     if let Some(why) = describe_no_verdict(outcome, &scene.name) {
         bail!(why);
     }
@@ -150,9 +150,9 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
 
 /// Collects the evidence for the report. If only a part of the trace was kept and the file can be read again, the whole
 /// trace is used.
-fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
-    let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
-    examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
+fn gather_evidence(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
+    let mut again = if lasts && !examined.trace.is_whole() { input::open_trace(name).ok() } else { None };
+    examined.gather_evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
 }
 
 /// Returns whether a trace can be read a second time. It then need not be kept while it is judged.

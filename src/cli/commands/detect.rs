@@ -12,7 +12,7 @@ use crate::{
     render::{detection, plot::PlotTarget},
     report::{
         describe::no_result,
-        detect::{Detect as Report, Overlap, Place},
+        detect::{CallPlace, Detect as Report, Overlap},
         number::format_count,
         style::Style,
     },
@@ -36,7 +36,7 @@ fn study_motion(motion: &PairMotion) -> Result<Study> {
     Study::for_motion(motion).context(NO_ANSWER)
 }
 
-fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
+fn show(arguments: &DetectArguments, study: &Study, place: Option<CallPlace<'_>>, inputs: &[Identity]) -> Result<()> {
     let report = Report { study, place };
     write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
@@ -80,7 +80,7 @@ fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
 
 /// Reports on a pair of a scene, in a step of a trace or of the reference's own run.
 fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
-    let scene = input::scene(name)?;
+    let scene = input::read_scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.step_count();
     if step == 0 || step > steps {
@@ -106,7 +106,8 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         return print(arguments, &Overlap { study: &study, scene, trace, step, pair, logged }, &inputs);
     }
     let records = traced.as_ref().map(|traced| (&traced.mid, &traced.end.polynomials));
-    let InspectedPair { step: inspected, end, failed } = evidence::inspect(&scene.scene, step, &before, records, pair);
+    let InspectedPair { step: inspected, end, error: failed } =
+        evidence::inspect(&scene.scene, step, &before, records, pair);
     let passes = inspected.calls.len();
     let call = inspected.calls.get(arguments.pass as usize - 1);
     match (call, failed) {
@@ -125,7 +126,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
     let logged = call.map_or(&CallLog::Unknown, |call| &call.logged);
     let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
-    let place = Place { scene, trace, step, pair, pass, passes, logged };
+    let place = CallPlace { scene, trace, step, pair, pass, passes, logged };
     show(arguments, &study, Some(place), &inputs)
 }
 
@@ -151,7 +152,7 @@ struct TracedStep {
 }
 
 fn read_traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep> {
-    let mut trace = input::trace(name)?;
+    let mut trace = input::open_trace(name)?;
     let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);
     let (mut frame, mut before, mut mid) = (Frame::default(), State::default(), State::default());

@@ -1,11 +1,11 @@
 //! The progress display of a grading, on standard error. It consists of bars on a terminal, and otherwise of one line
 //! per finished submission.
 use crate::{
-    cli::{console, screen},
-    files::Place,
+    cli::{console, progress_bars},
+    files::FilePlace,
     report::{
-        foreign::one_line,
-        grade::{format_score, no_points, shorten_name},
+        grade::{describe_missing_points, format_score, shorten_name},
+        untrusted_text::to_one_line,
     },
     suite::{Submission, batch::Event, plan::Plan},
 };
@@ -39,9 +39,9 @@ impl<'a> LiveDisplay<'a> {
     }
 
     /// Updates the display after an event.
-    pub(super) fn event(&mut self, event: &Event<'_>) {
+    pub(super) fn show_event(&mut self, event: &Event<'_>) {
         match *event {
-            Event::SceneBegins { submission, scene } => self.begin(submission, scene),
+            Event::SceneBegins { submission, scene } => self.begin_scene(submission, scene),
             Event::Step { submission, scene, step } => {
                 if let Some(bar) = self.bars.as_ref().and_then(|bars| bars.running.get(&(submission, scene))) {
                     bar.set_position(u64::from(step));
@@ -69,9 +69,9 @@ impl<'a> LiveDisplay<'a> {
                     "[{}/{}] {}: {}, {}",
                     self.graded,
                     self.submissions.len(),
-                    shorten_name(&one_line(&grade.submission)),
+                    shorten_name(&to_one_line(&grade.submission)),
                     grade.verdict,
-                    reached.or_else(|| no_points(grade)).unwrap_or_default(),
+                    reached.or_else(|| describe_missing_points(grade)).unwrap_or_default(),
                 );
                 match &self.bars {
                     Some(bars) => drop(bars.all.println(line)),
@@ -81,22 +81,22 @@ impl<'a> LiveDisplay<'a> {
         }
     }
 
-    fn begin(&mut self, submission: usize, scene: usize) {
+    fn begin_scene(&mut self, submission: usize, scene: usize) {
         let Some(bars) = &mut self.bars else { return };
         let Some(task) = self.plan.scenes().nth(scene) else { return };
         let bar = console::add_bar(&bars.all, task.scene.step_count().into(), "  {msg:<60!} step {pos} of {len}");
-        bar.set_message(format!("{} {}", shorten_name(&one_line(&self.submissions[submission].name)), task.name));
+        bar.set_message(format!("{} {}", shorten_name(&to_one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
     }
 }
 
 /// A file with the number of scenes that have a verdict. Programs that wait for the grading can read it.
 pub(super) struct Counter {
-    place: Place,
+    place: FilePlace,
     /// Whether each scene of the plan counts, in the order of the plan.
-    counts: Vec<bool>,
+    is_counted: Vec<bool>,
     done: usize,
-    all: usize,
+    total: usize,
 }
 
 impl Counter {
@@ -107,20 +107,20 @@ impl Counter {
     /// Fails if the file can't be written.
     pub(super) fn new(file: &Path, submissions: usize, counts: Vec<bool>) -> io::Result<Self> {
         let all = submissions * counts.iter().filter(|counts| **counts).count();
-        let place = Place::new(file.parent().unwrap_or(Path::new("")), file.file_name().unwrap_or_default());
-        let counter = Self { place, counts, done: 0, all };
+        let place = FilePlace::new(file.parent().unwrap_or(Path::new("")), file.file_name().unwrap_or_default());
+        let counter = Self { place, is_counted: counts, done: 0, total: all };
         counter.write()?;
         Ok(counter)
     }
 
     fn write(&self) -> io::Result<()> {
-        self.place.write(format!("{}/{}\n", self.done, self.all).as_bytes())
+        self.place.write(format!("{}/{}\n", self.done, self.total).as_bytes())
     }
 
     /// Counts a scene that has its verdict. If the file cannot be written, the grading still continues.
-    pub(super) fn event(&mut self, event: &Event<'_>) {
+    pub(super) fn count_event(&mut self, event: &Event<'_>) {
         if let Event::SceneDone { scene, .. } = *event
-            && self.counts.get(scene).copied().unwrap_or_default()
+            && self.is_counted.get(scene).copied().unwrap_or_default()
         {
             self.done += 1;
             drop(self.write());
@@ -132,7 +132,7 @@ impl Drop for LiveDisplay<'_> {
     fn drop(&mut self) {
         if let Some(bars) = &self.bars {
             bars.overall.finish_and_clear();
-            screen::clear_bars();
+            progress_bars::clear_bars();
         }
     }
 }

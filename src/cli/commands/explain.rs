@@ -1,6 +1,6 @@
 //! The command `explain`, which names the likely mistakes of a program, from its trace or by running it.
 use super::{
-    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, report},
+    probes::{Drawing, ExaminedProgram, ProgramUnderTest, judge_case, report},
     shrink,
 };
 use crate::{
@@ -63,13 +63,13 @@ fn drawing(arguments: &ExplainArguments) -> Drawing {
 }
 
 fn explain_trace(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Result<(Case, Option<Card>)> {
-    let scene = input::scene(scene)?;
-    let mut trace = input::trace(trace)?;
+    let scene = input::read_scene(scene)?;
+    let mut trace = input::open_trace(trace)?;
     if let Some(kind) = trace.looks_like {
         bail!("{} is not a trace: it {kind}", trace.name);
     }
     let (case, card, _) =
-        case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
+        judge_case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
     // Bytes after the last step matter only if they cannot be read.
     let _ = io::copy(&mut (&mut trace.reader).take(MAX_KEPT_BYTES as u64), &mut io::sink());
     trace.ensure_not_failed()?;

@@ -1,14 +1,14 @@
 //! The command `grade`, which runs programs on a suite in the sandbox, stores every result, and writes the reports.
 use super::{
-    closer::Closer,
-    compare,
     display::{Counter, LiveDisplay},
-    ending::{MAX_HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
-    host::backend,
+    earlier_grades,
+    further_commands::FurtherCommands,
+    grade_ending::{MAX_HARDEST, exit_code, scene_file_name, text, text_detail, to_file_name},
+    host::require_backend,
     last_run::LastRun,
     pages::{self, Pages},
     probes::Drawing,
-    results::{Report, Results, read_reports, refuse_several, wanted_pages},
+    results::{Report, Results, find_wanted_pages, read_reports, reject_several},
     shard::Sharding,
     shrink,
     submissions::{FoundSubmissions, Search},
@@ -18,19 +18,18 @@ use crate::{
     cli::{
         arguments::grade::GradeArguments as Arguments,
         console, exit,
-        interrupt::{cancelled_by_signals, show_activity},
+        interrupt::{cancellation_by_signals, show_activity},
         output,
         selection::Selection,
     },
-    files::{Folder, Place},
+    files::{FilePlace, Folder},
     judge::Rules,
     report::{
-        explain,
-        foreign::{clean_output, strip_control_characters},
-        grade,
+        explain, grade,
         number::format_count,
         page::Audience,
         style::Style,
+        untrusted_text::{clean_output, strip_control_characters},
         words,
     },
     sandbox::Backend,
@@ -88,7 +87,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     }
     let reports = read_reports(&arguments.format)?;
     // The earlier grading is read before anything is written, because its files may be in the folder for results.
-    let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
+    let earlier = arguments.compare.as_deref().map(earlier_grades::read).transpose()?.unwrap_or_default();
     if arguments.traces {
         return traces::run(arguments, plan, &reports, &earlier);
     }
@@ -96,28 +95,28 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     if arguments.output.is_none() && output.is_symlink() {
         bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
     }
-    let FoundSubmissions { mut submissions, passed_over } =
+    let FoundSubmissions { mut submissions, skipped_entries: passed_over } =
         Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
     if let Some(sharding) = &sharding {
         sharding.begin()?;
-        submissions = sharding.part(submissions);
+        submissions = sharding.select_submissions(submissions);
         if submissions.is_empty() {
             return sharding.end(&[], &passed_over).map(|()| exit::ACCEPTED);
         }
     }
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
-    refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
+    reject_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
     // The signal handler is installed before an output is opened. The output's own handler would end the program
     // immediately.
-    let cancellation = cancelled_by_signals();
+    let cancellation = cancellation_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
         // The outputs are opened first. If one cannot be written, this is reported before the work begins.
         drop(output::Output::create(file, &[])?);
     }
-    let backend = backend(arguments.unsafe_no_sandbox)?;
+    let backend = require_backend(arguments.unsafe_no_sandbox)?;
     let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1 || sharding.is_some();
     let folder = keeps.then_some(output);
     let whole = plan.scenes().count();
@@ -137,7 +136,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
-    let pages = wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
+    let pages = find_wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over, times };
@@ -174,10 +173,10 @@ impl GradingSession<'_> {
         earlier: &[EarlierGrade],
     ) -> Result<(Vec<Grade>, u8)> {
         let (mut grades, fault) = self.grade(submissions, self.arguments.fresh)?;
-        compare::add(earlier, &mut grades);
+        earlier_grades::add_earlier_grades(earlier, &mut grades);
         last_run.remember(&grades);
         self.report(&grades, submissions, reports)?;
-        self.say_what_was_kept(&grades);
+        self.report_kept_results(&grades);
         match fault {
             Some(fault) => Err(fault),
             None => {
@@ -191,7 +190,7 @@ impl GradingSession<'_> {
     }
 
     /// Prints how many results were reused, and how a grading that was stopped can be continued.
-    fn say_what_was_kept(&self, grades: &[Grade]) {
+    fn report_kept_results(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::count_reused).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
@@ -208,9 +207,9 @@ impl GradingSession<'_> {
     }
 
     /// Returns the file for a scene's trace that is not accepted; `None` if traces are not kept.
-    fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
+    fn trace_place(&self, submission: &str, scene: &str) -> Option<FilePlace> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
-        Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
+        Some(FilePlace::new(folder, format!("traces/{}/{}.bin", to_file_name(submission), scene_file_name(scene))))
     }
 
     /// Grades the submissions. Also returns the error that stopped the grading or the storing of results, if there was
@@ -218,7 +217,7 @@ impl GradingSession<'_> {
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
-                Folder::make(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+                Folder::create(folder).with_context(|| format!("cannot make {}", folder.display()))?;
                 Some(FolderResults::open(folder, fresh)?)
             }
             None => None,
@@ -229,20 +228,22 @@ impl GradingSession<'_> {
             fail_fast: self.arguments.fail_fast,
             uses_recordings: self.arguments.recorded,
         };
-        let faults =
-            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS_FOLDER), |folder| Place::new(folder, "faults"));
+        let faults = self
+            .folder
+            .as_deref()
+            .map_or_else(|| FilePlace::new("", FAULTS_FOLDER), |folder| FilePlace::new(folder, "faults"));
         let trace = |submission: &Submission, scene: &SceneTask| {
-            self.trace(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
+            self.trace_place(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
         };
         if let (Some(pages), true) = (&self.pages, fresh) {
-            pages.forget();
+            pages.remove_cards();
         }
         let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene| {
             let drawing = Drawing { hints: self.plan.staff_hints, has_pictures: self.pages.is_some() };
             let (mut told, card) = shrink::describe(small, &program, &self.arguments.suite, drawing);
-            told.card = self.pages.as_ref().and_then(|pages| pages.keep(card));
+            told.card = self.pages.as_ref().and_then(|pages| pages.store_card(card));
             told
         };
         let log_error = OnceLock::new();
@@ -263,19 +264,20 @@ impl GradingSession<'_> {
             options,
             fault_folder: &faults,
             trace_file: if self.arguments.keep_traces { Some(&trace) } else { None },
-            cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
+            cards: self.pages.as_ref().map(|pages| pages.new_cards(&draw)),
             smallest: if self.arguments.smallest { Some(&smallest) } else { None },
             finish: Some(&finish),
             timings: self.arguments.timings.then_some(self.times),
             reference: reference.as_deref(),
         };
         let mut display = LiveDisplay::new(self.plan, submissions);
-        let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
+        let mut counter =
+            self.arguments.progress.as_deref().map(|file| self.new_counter(file, submissions)).transpose()?;
         let mut on_event = |event: batch::Event<'_>| {
             show_activity();
-            display.event(&event);
+            display.show_event(&event);
             if let Some(counter) = &mut counter {
-                counter.event(&event);
+                counter.count_event(&event);
             }
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
@@ -287,7 +289,7 @@ impl GradingSession<'_> {
     }
 
     /// Returns the counter for `--progress`. It counts the scenes that the reader of the pages may see.
-    fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
+    fn new_counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
         let counts = groups.flat_map(|group| {
@@ -318,9 +320,9 @@ impl GradingSession<'_> {
     /// Renders the report for a terminal. For a class, it is a table and the result of the class.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = text_detail(self.arguments, grades.len() > 1);
-        let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
-        let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
-        let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
+        let trace = |submission: &str, scene: &str| self.trace_place(submission, scene).map(|place| place.path());
+        let closer = FurtherCommands { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
+        let closer = |grade: &Grade, scene: &_| closer.list_commands(grade, scene);
         text(grades, self.passed_over(), shown, MAX_HARDEST, Some(&closer))
     }
 
@@ -334,7 +336,7 @@ impl GradingSession<'_> {
     ) -> Result<u8> {
         let mut earlier = earlier;
         loop {
-            let seen = change_stamps(submissions);
+            let seen = find_change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_cancelled() {
                 return Ok(code);
@@ -348,7 +350,7 @@ impl GradingSession<'_> {
                 if self.cancellation.is_cancelled() {
                     return Ok(exit::INTERRUPTED);
                 }
-                let now = change_stamps(submissions);
+                let now = find_change_stamps(submissions);
                 if now == last && now != seen && now.iter().all(Option::is_some) {
                     break;
                 }
@@ -360,7 +362,7 @@ impl GradingSession<'_> {
 
 /// Returns the newest modification time below each submission, and the submission's size. If they change, the
 /// submission has changed.
-fn change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
+fn find_change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),
         None => submission.path.clone(),
@@ -401,7 +403,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         let details = grade::describe_difference(scene).into_iter().chain(words::list_details(scene));
         text.extend(
             details
-                .chain(explain::lines(&scene.corrected_explanations, Style::Plain))
+                .chain(explain::explanation_texts(&scene.corrected_explanations, Style::Plain))
                 .map(|line| format!("{}\n", strip_control_characters(&line))),
         );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {
@@ -410,6 +412,6 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             }
         }
     }
-    let file = Place::new(folder, format!("logs/{}.log", file_name(&grade.submission)));
-    output::write_at(&file, text.trim_start().as_bytes())
+    let file = FilePlace::new(folder, format!("logs/{}.log", to_file_name(&grade.submission)));
+    output::write_below(&file, text.trim_start().as_bytes())
 }

@@ -4,12 +4,12 @@ use crate::{
     cli::{
         arguments::grade::{DemoArguments, SelftestArguments},
         console, exit,
-        interrupt::cancelled_by_signals,
+        interrupt::cancellation_by_signals,
         output,
     },
-    files::{self, Place},
+    files::{self, FilePlace},
     report::{formats::Format, number::format_count, page::Audience},
-    sample::pin,
+    sample::pinned_mistake,
     sandbox::{self, Backend, Supervisor, selftest},
     student::{self, RowKind},
     suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan, suggestions},
@@ -76,14 +76,14 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
     let folder = tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("no temporary folder")?;
     let plan = plan::load_suite(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
-    let backend = backend(false)?;
-    let cancellation = cancelled_by_signals();
+    let backend = require_backend(false)?;
+    let cancellation = cancellation_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None, false)?;
     let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, pinned) in
-        [("right sample".to_owned(), pin::RIGHT_ID), (format!("sample with mistake {mistake}"), mistake)]
+        [("right sample".to_owned(), pinned_mistake::RIGHT_ID), (format!("sample with mistake {mistake}"), mistake)]
     {
         let path = folder.path().join("FOSSSim");
         write_sample(pinned, &path)?;
@@ -93,9 +93,9 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             backend: &backend,
             program: "",
             options: Options { jobs, fail_fast: false, uses_recordings: false },
-            fault_folder: &Place::new("", "fosssim-faults"),
+            fault_folder: &FilePlace::new("", "fosssim-faults"),
             trace_file: None,
-            cards: Some(pages.drawing(&draw)),
+            cards: Some(pages.new_cards(&draw)),
             smallest: None,
             finish: None,
             timings: None,
@@ -113,7 +113,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
         console::print("The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
-            output::write(&arguments.output, pages.render_one(grade, None, Audience::Staff).as_bytes())?;
+            output::write(&arguments.output, pages.render_grade(grade, None, Audience::Staff).as_bytes())?;
             let words = format!("The report on the wrong sample, for a browser: {}\n", arguments.output.display());
             console::print(&words)?;
         }
@@ -127,13 +127,16 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
 fn write_sample(mistake: &str, program: &Path) -> Result<()> {
     let this = Path::new("/proc/self/exe").canonicalize().context("cannot find this program")?;
     let bytes = files::read(&this, MAX_PROGRAM_BYTES).with_context(|| format!("cannot read {}", this.display()))?;
-    output::write(program, &pin::write(&bytes, mistake).context("there are too many mistakes for one program")?)?;
+    output::write(
+        program,
+        &pinned_mistake::write(&bytes, mistake).context("there are too many mistakes for one program")?,
+    )?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
         .with_context(|| format!("cannot make {} executable", program.display()))
 }
 
 pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
-    let mut backend = backend(false)?;
+    let mut backend = require_backend(false)?;
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
         let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
@@ -171,7 +174,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
 }
 
 /// Returns the sandbox. If required layers are missing, the error names them.
-pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
+pub(super) fn require_backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {
         return Backend::without_sandbox(supervisor)

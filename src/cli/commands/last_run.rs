@@ -4,7 +4,7 @@
 //! ignored.
 use crate::{
     cli::output,
-    files::Place,
+    files::FilePlace,
     suite::{Grade, Submission, Verdict},
 };
 use std::{
@@ -24,14 +24,14 @@ type AcceptedScenes = BTreeMap<String, BTreeMap<String, bool>>;
 /// The scenes that the last grading accepted and did not accept.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
-    file: Option<Place>,
-    known: AcceptedScenes,
+    file: Option<FilePlace>,
+    accepted_scenes: AcceptedScenes,
 }
 
 impl LastRun {
     /// Reads what the last grading of these submissions on the same suite accepted.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
-        let file = folder.map(|folder| Place::new(folder, LAST_RUN_FILE)).or_else(|| {
+        let file = folder.map(|folder| FilePlace::new(folder, LAST_RUN_FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
             for submission in submissions {
                 let path = std::path::absolute(&submission.path).unwrap_or_else(|_| submission.path.clone());
@@ -39,27 +39,27 @@ impl LastRun {
                 hasher.update(submission.name.as_bytes()).update(b"\0");
             }
             let name = hasher.update(suite.as_bytes()).finalize().to_hex();
-            Some(Place::new(cache_folder()?, format!("last-run/{}.json", &name[..16])))
+            Some(FilePlace::new(cache_folder()?, format!("last-run/{}.json", &name[..16])))
         });
         let text = file.as_ref().and_then(|file| file.read(MAX_BYTES).ok()).unwrap_or_default();
-        Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
+        Self { file, accepted_scenes: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
     /// Returns the scenes that were not accepted for at least one submission; `None` if there was no such grading.
     pub(super) fn failed_scenes(&self) -> Option<BTreeSet<String>> {
-        let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
-        (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
+        let scenes = self.accepted_scenes.values().flatten().filter(|(_, accepted)| !**accepted);
+        (!self.accepted_scenes.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }
 
     /// Returns whether any scene of the submission was not accepted.
     pub(super) fn has_failed(&self, submission: &str) -> bool {
-        self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
+        self.accepted_scenes.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
 
     /// Stores which scenes these grades accept. Scenes that were not run keep their earlier state.
     pub(super) fn remember(&mut self, grades: &[Grade]) {
         for grade in grades {
-            let scenes = self.known.entry(grade.submission.clone()).or_default();
+            let scenes = self.accepted_scenes.entry(grade.submission.clone()).or_default();
             for scene in grade.scenes() {
                 if scene.verdict == Verdict::NotRun {
                     scenes.entry(scene.scene.clone()).or_insert(false);
@@ -69,8 +69,8 @@ impl LastRun {
             }
         }
         let Some(file) = &self.file else { return };
-        let text = serde_json::to_vec(&self.known).unwrap_or_default();
-        drop(output::write_at(file, &text));
+        let text = serde_json::to_vec(&self.accepted_scenes).unwrap_or_default();
+        drop(output::write_below(file, &text));
     }
 }
 

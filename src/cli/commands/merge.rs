@@ -1,14 +1,14 @@
 //! The command `merge`, which joins the shards of a grading.
 use super::{
-    ending::{exit_code, text},
+    grade_ending::{exit_code, text},
     last_run::LastRun,
     pages::Pages,
-    results::{Results, read_reports, refuse_several},
-    shard::Part,
+    results::{Results, read_reports, reject_several},
+    shard::ShardResult,
 };
 use crate::{
     cli::{arguments::grade::MergeArguments, console, input, interrupt::clean_up_when_interrupted, output},
-    files::{FileError, Folder, FolderEntry, Place},
+    files::{FileError, FilePlace, Folder, FolderEntry},
     report::{
         grade::{self, TextDetail},
         number::format_count,
@@ -40,15 +40,15 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let parts = find(&arguments.folders)?;
     let (first, output) = require_complete(&parts, arguments)?;
     let names = &first.common.submissions;
-    refuse_several(&reports, names.len(), "")?;
-    Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
+    reject_several(&reports, names.len(), "")?;
+    Folder::create(&output).with_context(|| format!("cannot make {}", output.display()))?;
     // The lock is held until the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
-            let place = Place::new(folder, name);
+            let place = FilePlace::new(folder, name);
             match place.open_folder() {
-                Ok(from) => copy(&from, &Place::new(&output, name), MAX_DEPTH)?,
+                Ok(from) => copy(&from, &FilePlace::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
                     return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
@@ -84,8 +84,8 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
 }
 
 /// Finds shards in the given folders and in their subfolders.
-fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
-    let mut parts: Vec<(PathBuf, Part)> = Vec::new();
+fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, ShardResult)>> {
+    let mut parts: Vec<(PathBuf, ShardResult)> = Vec::new();
     for folder in folders {
         let listing = fs::read_dir(folder).with_context(|| format!("no folder {}", folder.display()))?;
         let mut places: Vec<PathBuf> =
@@ -94,7 +94,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
         places.insert(0, folder.clone());
         let before = parts.len();
         for place in places {
-            if let Some(part) = Part::read(&place)? {
+            if let Some(part) = ShardResult::read(&place)? {
                 parts.push((place, part));
             }
         }
@@ -106,7 +106,10 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
 }
 
 /// Checks that each shard of the same grading exists exactly once. Returns one of them, and the folder for the results.
-fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
+fn require_complete<'a>(
+    parts: &'a [(PathBuf, ShardResult)],
+    arguments: &MergeArguments,
+) -> Result<(&'a ShardResult, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
         if let Some(what) = first.common.difference(&part.common) {
@@ -158,7 +161,7 @@ fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments
 
 /// Stores the results of a shard in the merged folder. A later grading without shards then finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
-    let place = Place::new(folder, JOURNAL_NAME);
+    let place = FilePlace::new(folder, JOURNAL_NAME);
     let (file, length) = match place.open_file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
         // If a shard has no submissions, it has no journal.
@@ -176,7 +179,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
 }
 
 /// Copies the files of a folder. Links are followed neither in the folder nor at the destination.
-fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
+fn copy(from: &Folder, to: &FilePlace, depth: usize) -> Result<()> {
     for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
         let (source, target) = (from.given_path().join(&name), to.join(&name));
         match from.entry(&name) {
@@ -194,11 +197,11 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
     Ok(())
 }
 
-fn copy_file(file: File, target: &Place) -> io::Result<()> {
+fn copy_file(file: File, target: &FilePlace) -> io::Result<()> {
     let length = file.metadata()?.len();
     if length > MAX_FILE_BYTES {
         return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
     // Only the length that was read before is copied, even if the file grows.
-    output::copy_at(target, &mut file.take(length))
+    output::copy_below(target, &mut file.take(length))
 }

@@ -1,13 +1,13 @@
 //! The commands. Each reads its inputs, calls the libraries, and prints what a renderer returns.
 
 mod check;
-mod closer;
-mod compare;
 mod detect;
 mod display;
-mod ending;
+mod earlier_grades;
 mod explain;
+mod further_commands;
 mod grade;
+mod grade_ending;
 mod host;
 mod last_run;
 mod merge;
@@ -26,10 +26,10 @@ mod simulate;
 mod submissions;
 mod suite;
 mod suite_report;
-mod suite_sight;
 mod timings;
 mod trace;
 mod traces;
+mod visible_mistakes;
 
 use super::{
     arguments::{Command, TraceCommand},
@@ -43,7 +43,7 @@ use anyhow::Result;
 ///
 /// Fails if the command is used wrongly, if an input is bad, or if this program has an error. The error is the reason.
 pub(super) fn run(command: &Command) -> Result<u8> {
-    console::be_quiet(is_quiet(command));
+    console::set_quiet(is_quiet(command));
     let done = match command {
         // The exit codes of these commands are verdicts.
         Command::Check(arguments) => return check::run(arguments),

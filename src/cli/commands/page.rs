@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     }
     let course = arguments.suite.as_deref().map(|name| course_part(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;
-    target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
+    target.finish_and_print(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
 /// Returns the part of a suite that the readers of the page may see.

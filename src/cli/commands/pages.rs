@@ -1,13 +1,13 @@
 //! The pictures of judged traces, and the HTML pages that contain them.
-use super::ending::file_name;
+use super::grade_ending::to_file_name;
 use crate::{
     cli::output,
     evidence::{self, ExaminedTrace, Focus, KeptPart, examine},
-    files::Place,
+    files::FilePlace,
     judge::{Rules, replay},
     report::{
         check::{Check, StepChoice, WrongSteps},
-        page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
+        page::{Audience, Card, Case, ClassPage, GradePage, MistakeRun},
     },
     suite::{
         Grade, SkippedEntry,
@@ -29,7 +29,7 @@ const MAX_MOTION_VALUES: usize = 1 << 19;
 
 /// The cards of a grading, and the folder in which its pages are written.
 pub(super) struct Pages {
-    cards: Place,
+    cards: FilePlace,
     /// The folder for pages; `None` if none are written.
     folder: Option<PathBuf>,
     /// Whether pages for students are written as well.
@@ -42,23 +42,23 @@ impl Pages {
     /// grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let (cards, temporary) = match folder {
-            Some(folder) => (Place::new(folder, "cards"), None),
+            Some(folder) => (FilePlace::new(folder, "cards"), None),
             None => {
                 let made =
                     tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?;
-                (Place::new(made.path(), ""), Some(made))
+                (FilePlace::new(made.path(), ""), Some(made))
             }
         };
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
 
     /// Returns a storage of cards that uses this folder. `draw` draws each card.
-    pub(super) fn drawing<'a>(&'a self, draw: &'a DrawCard<'a>) -> Cards<'a> {
+    pub(super) fn new_cards<'a>(&'a self, draw: &'a DrawCard<'a>) -> Cards<'a> {
         Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
 
     /// Removes the cards of earlier gradings.
-    pub(super) fn forget(&self) {
+    pub(super) fn remove_cards(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
         for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
             // If a card can't be removed, it only uses space.
@@ -72,12 +72,12 @@ impl Pages {
     }
 
     /// Stores a card, and returns its name. If it can't be stored, only the picture is missing.
-    pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
+    pub(super) fn store_card(&self, card: Option<Card>) -> Option<String> {
         cards::store_card_file(&self.cards, &card?.to_stored()).ok()
     }
 
     /// Renders the page of one submission.
-    pub(super) fn render_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
+    pub(super) fn render_grade(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
         GradePage { grade, card: &|name| self.card(name), class, reader }.html()
     }
 
@@ -91,24 +91,24 @@ impl Pages {
     ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
         let write = |name: &str, page: &str| {
-            let place = Place::new(folder, name);
-            output::write_at(&place, page.as_bytes()).map(|()| Some(place.path()))
+            let place = FilePlace::new(folder, name);
+            output::write_below(&place, page.as_bytes()).map(|()| Some(place.path()))
         };
         if reader == Audience::Student || grades.len() > 1 {
             grades.par_iter().try_for_each(|grade| {
-                let name = format!("students/{}.html", file_name(&grade.submission));
-                write(&name, &self.render_one(grade, None, Audience::Student)).map(drop)
+                let name = format!("students/{}.html", to_file_name(&grade.submission));
+                write(&name, &self.render_grade(grade, None, Audience::Student)).map(drop)
             })?;
         }
         if let [grade] = grades {
-            return write("report.html", &self.render_one(grade, None, Audience::Staff));
+            return write("report.html", &self.render_grade(grade, None, Audience::Staff));
         }
         grades.par_iter().try_for_each(|grade| {
-            let name = format!("reports/{}.html", file_name(&grade.submission));
-            write(&name, &self.render_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
+            let name = format!("reports/{}.html", to_file_name(&grade.submission));
+            write(&name, &self.render_grade(grade, Some("../index.html"), Audience::Staff)).map(drop)
         })?;
         // File names are already safe in a URL, except for blanks.
-        let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
+        let page = |grade: &Grade| format!("reports/{}.html", to_file_name(&grade.submission).replace(' ', "%20"));
         write("index.html", &ClassPage { grades, passed_over, page: &page }.html())
     }
 }
@@ -150,7 +150,7 @@ pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: us
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, MAX_MOTION_VALUES);
     let what_if = match (hints, explanations.first()) {
-        (Hints::Full, Some(first)) => WhatIf::for_scene(scene, first, (!is_cut).then_some(trace), &evidence),
+        (Hints::Full, Some(first)) => MistakeRun::for_scene(scene, first, (!is_cut).then_some(trace), &evidence),
         _ => None,
     };
     let steps = WrongSteps::new(StepChoice::None);
@@ -166,6 +166,6 @@ pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: us
         looks_like: None,
     };
     let has_trace = trace_name.is_some();
-    let case = Case { check, scene, evidence: Some(&evidence), what_if: what_if.as_ref(), hints, has_trace };
+    let case = Case { check, scene, evidence: Some(&evidence), mistake_run: what_if.as_ref(), hints, has_trace };
     Card::for_case(&case, depth)
 }

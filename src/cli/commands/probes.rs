@@ -1,20 +1,20 @@
 //! Runs a program on many small scenes, and finds its faults in each scene and its likely mistakes.
-use super::{host::backend, pages};
+use super::{host::require_backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
-    cli::{arguments::ExplainFormat, console, input, interrupt::cancelled_by_signals, output::Output},
+    cli::{arguments::ExplainFormat, console, input, interrupt::cancellation_by_signals, output::Output},
     diagnose::{self, Explanation},
     evidence::{KeptPart, examine},
-    files::Place,
+    files::FilePlace,
     judge::{Rules, fair::FairVerdict, kept_trace::MAX_KEPT_BYTES, replay::Options},
     report::{
         case::Case,
         check::describe_stop,
         diagnosis::Diagnosis,
-        foreign::{clean_output, one_line},
         number::format_count,
         page::{Card, ExplainedPage},
         style::Style,
+        untrusted_text::{clean_output, to_one_line},
     },
     sandbox::{Backend, RunEnd},
     scene::{self, Scene},
@@ -60,7 +60,7 @@ pub(super) struct ProgramUnderTest {
     plan: Plan,
     backend: Backend,
     folders: Folders,
-    nowhere: Place,
+    unused_place: FilePlace,
 }
 
 /// A program's behavior on the scenes, and the report about it.
@@ -81,11 +81,11 @@ impl ProgramUnderTest {
             program: make_absolute(program),
             assignment: Assignment::DEFAULT,
             suite: suite.unwrap_or_default().to_owned(),
-            cancellation: cancelled_by_signals(),
+            cancellation: cancellation_by_signals(),
             plan: plan::find_suite(suite.unwrap_or(Assignment::DEFAULT.key()))?,
-            backend: backend(unsafe_no_sandbox)?,
+            backend: require_backend(unsafe_no_sandbox)?,
             folders: Folders::default(),
-            nowhere: Place::new("", ""),
+            unused_place: FilePlace::new("", ""),
         };
         if suite.is_some() {
             ready.assignment = ready.plan.assignment();
@@ -109,7 +109,7 @@ impl ProgramUnderTest {
             student_hints: Hints::Full,
             uses_recordings: false,
             cancellation: &self.cancellation,
-            fault_folder: &self.nowhere,
+            fault_folder: &self.unused_place,
             trace_location: None,
             cards: None,
             timings: None,
@@ -118,7 +118,7 @@ impl ProgramUnderTest {
 
     /// Returns the limits of the suite. Times are shortened, because a right program needs only some milliseconds for
     /// the scenes.
-    pub(super) fn limits(&self) -> RunLimits {
+    pub(super) fn run_limits(&self) -> RunLimits {
         let limits = self.plan.limits;
         RunLimits { cpu: limits.cpu.min(TIME_LIMITS[0]), wall: limits.wall.min(TIME_LIMITS[1]), ..limits }
     }
@@ -144,7 +144,7 @@ impl ProgramUnderTest {
 
     /// Runs the program on scenes; `None` if the user interrupted it.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
-        let long = self.limits();
+        let long = self.run_limits();
         // After a run has ended at a limit, these shorter limits apply.
         let short = shorten_limits(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
@@ -166,9 +166,9 @@ impl ProgramUnderTest {
             let failing = FailureKind::from_end(&outcome.ended);
             stopped +=
                 usize::from(matches!(failing, Some(FailureKind::Time | FailureKind::Memory | FailureKind::Output)));
-            let note = note(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
+            let note = describe_end(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
             let names = (task.name.clone(), self.program.display().to_string());
-            let (case, card, steps) = case(names, false, &task.scene, &trace[..], note, drawing);
+            let (case, card, steps) = judge_case(names, false, &task.scene, &trace[..], note, drawing);
             cases.push(case);
             cards.push(card);
             ends.push((outcome.ended, steps));
@@ -198,7 +198,7 @@ impl ProgramUnderTest {
 }
 
 /// Judges a trace by the fair rules. If they reject it, it is also explained, and drawn if a page was requested.
-pub(super) fn case(
+pub(super) fn judge_case(
     (name, trace): (String, String),
     has_trace: bool,
     scene: &Scene,
@@ -252,7 +252,7 @@ pub(super) fn report(
         ExplainFormat::Html => ExplainedPage { diagnosis, cards }.html(),
     };
     match target {
-        Some(target) => target.finish_and_tell(text.as_bytes(), format == ExplainFormat::Html),
+        Some(target) => target.finish_and_print(text.as_bytes(), format == ExplainFormat::Html),
         None if format == ExplainFormat::Text => console::report(&text),
         None => console::print(&text),
     }
@@ -261,7 +261,7 @@ pub(super) fn report(
 /// Reads the scenes that the user named.
 pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let read = |path: &PathBuf| {
-        let scene = input::scene(path)?;
+        let scene = input::read_scene(path)?;
         let xml = scene::write(&scene.scene).into_bytes();
         Ok(SceneTask { name: scene.name, xml, scene: scene.scene, recording: None })
     };
@@ -279,11 +279,11 @@ fn make_absolute(program: &Path) -> PathBuf {
 }
 
 /// Describes how a program ended; `None` if it ended well.
-pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+pub(super) fn describe_end(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,
         (ended, false) => Some(format!("the program {ended}")),
-        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", last_line(stderr))),
+        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", find_last_line(stderr))),
     }
 }
 
@@ -298,10 +298,10 @@ fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
 }
 
 /// Returns the last line that a program wrote to standard error; empty if it wrote nothing.
-fn last_line(stderr: &[u8]) -> String {
+fn find_last_line(stderr: &[u8]) -> String {
     let text = clean_output(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
-    last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
+    last.map(|line| format!("; its standard error ends with: {}", to_one_line(line))).unwrap_or_default()
 }
 
 /// Finds what the failing scenes have in common. `ends` has for each scene how the program ended, and the number of

@@ -1,7 +1,7 @@
 //! The command `record`, which records the reference's traces for a folder of scenes.
 use crate::{
     cli::{arguments::RecordArguments, console, exit, output},
-    files::{self, FileError, Place},
+    files::{self, FileError, FilePlace},
     report::number::format_count,
     scene::MAX_SCENE_BYTES,
     suite::{
@@ -22,7 +22,7 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded { list_bundled() } else { find_scenes(&arguments.assets)? };
     let mut recordings = Vec::new();
-    for Input { name, stem, xml } in scenes {
+    for RecordedScene { name, stem, xml } in scenes {
         recordings.push((stem, Recording::for_scene(&name, &xml).with_context(|| format!("cannot record {name}"))?));
     }
     if !arguments.check {
@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
 }
 
 /// A scene that is to be recorded.
-struct Input {
+struct RecordedScene {
     name: String,
     /// The path of the recording in the folder of recordings, without the ending.
     stem: String,
@@ -40,14 +40,15 @@ struct Input {
 }
 
 /// Returns the embedded scenes. Their recordings are found by name.
-fn list_bundled() -> Vec<Input> {
-    let input =
-        |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
+fn list_bundled() -> Vec<RecordedScene> {
+    let input = |name: &str| {
+        Some(RecordedScene { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() })
+    };
     library::names().filter_map(input).collect()
 }
 
 /// Returns the scenes of a folder, in alphabetical order.
-fn find_scenes(folder: &Path) -> Result<Vec<Input>> {
+fn find_scenes(folder: &Path) -> Result<Vec<RecordedScene>> {
     let shown = folder.display();
     let files = scene_files::list(folder, ".xml").with_context(|| {
         format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
@@ -64,7 +65,7 @@ fn find_scenes(folder: &Path) -> Result<Vec<Input>> {
     let read = |SceneFile { name, stem, path }: SceneFile| {
         let xml =
             files::read(&path, MAX_SCENE_BYTES as u64).with_context(|| format!("cannot read {}", path.display()))?;
-        Ok(Input { name, stem, xml })
+        Ok(RecordedScene { name, stem, xml })
     };
     files.into_iter().map(read).collect()
 }
@@ -75,7 +76,7 @@ struct EarlierRecordings<'a>(Option<&'a Path>);
 impl EarlierRecordings<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
         let Some(folder) = self.0 else { return Ok(library::recording_file(path).map(<[u8]>::to_vec)) };
-        match Place::new(folder, path).read(MAX_RECORDING_BYTES) {
+        match FilePlace::new(folder, path).read(MAX_RECORDING_BYTES) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(FileError::Missing { .. }) => Ok(None),
             Err(error) => Err(io::Error::other(error)),
@@ -122,7 +123,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
 fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {
-        let place = |extension: &str| Place::new(folder, format!("{stem}.{extension}"));
+        let place = |extension: &str| FilePlace::new(folder, format!("{stem}.{extension}"));
         let packed = recording.pack().with_context(|| format!("cannot compress {}", recording.name))?;
         bytes += packed.len() as u64;
         replace(&place("bin.zst"), &packed)?;
@@ -132,11 +133,11 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
-                drop(Place::new(folder, format!("{stem}.{extension}")).remove());
+                drop(FilePlace::new(folder, format!("{stem}.{extension}")).remove());
             }
         }
     }
-    replace(&Place::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
+    replace(&FilePlace::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
     let (recordings, bytes) = (format_count(recordings.len() as u64, "recording"), format_count(bytes, "byte"));
     console::print(format!("{recordings}, {bytes}, in {}\n", folder.display()))?;
     Ok(exit::ACCEPTED)
@@ -147,9 +148,9 @@ fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::render_manifest(recordings.iter().map(|(_, recording)| recording))
 }
 
-fn replace(place: &Place, bytes: &[u8]) -> Result<()> {
+fn replace(place: &FilePlace, bytes: &[u8]) -> Result<()> {
     if place.read(bytes.len() as u64).is_ok_and(|old| old == bytes) {
         return Ok(());
     }
-    output::write_at(place, bytes)
+    output::write_below(place, bytes)
 }

@@ -2,7 +2,7 @@
 use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
-    files::{Place, open_for_writing},
+    files::{FilePlace, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
     suite::{Grade, SkippedEntry, catch_panic, suggestions},
 };
@@ -67,7 +67,7 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
 /// # Errors
 ///
 /// Fails if such a format was requested. For HTML, `of_html` is added to the message.
-pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
+pub(super) fn reject_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
             let hint = if *format == Format::Html { of_html } else { "" };
@@ -82,7 +82,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
 /// # Errors
 ///
 /// Fails if their folder can't be created.
-pub(super) fn wanted_pages(
+pub(super) fn find_wanted_pages(
     arguments: &Arguments,
     folder: Option<&Path>,
     is_class: bool,
@@ -135,7 +135,7 @@ impl Results<'_> {
             let by_scene = || Format::Csv.render_class(grades, passed_over);
             let lines = || grade::json_lines(grades, passed_over);
             let class = || {
-                let missing = grade::not_graded(grades, passed_over, Style::Plain);
+                let missing = grade::list_not_graded(grades, passed_over, Style::Plain);
                 wrap::wrap(&(grade::render_class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
             };
             let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
@@ -147,7 +147,8 @@ impl Results<'_> {
             // All cores are used, because this takes long for a large class.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
-            let write_pages = |pages: &Pages| make("the pages", || pages.write(grades, passed_over, self.reader));
+            let write_pages =
+                |pages: &Pages| catch_render_panic("the pages", || pages.write(grades, passed_over, self.reader));
             let (tables, first) = rayon::join(write_tables, || self.pages.map_or(Ok(Ok(None)), write_pages));
             tables.into_iter().for_each(&mut keep);
             keep(first.and_then(|first| first).map(|first| {
@@ -157,25 +158,27 @@ impl Results<'_> {
             }));
         }
         if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
-            keep(write(file, || pages.render_one(grade, None, Audience::Staff)));
+            keep(write(file, || pages.render_grade(grade, None, Audience::Staff)));
         }
         if let (Some(file), Some(pages), [grade]) = (self.published_page, self.pages, grades)
             && !grade.is_visible()
         {
-            keep(write(file, || pages.render_one(&grade.with_hidden_published(), None, Audience::Student)));
+            keep(write(file, || pages.render_grade(&grade.with_hidden_published(), None, Audience::Student)));
         }
         for report in reports {
             let told = self.visible_grades(report.format);
             let grades = told.as_ref();
             let render = || match (report.format, self.pages, grades) {
-                (Format::Html, Some(pages), [grade]) => pages.render_one(grade, None, self.reader),
+                (Format::Html, Some(pages), [grade]) => pages.render_grade(grade, None, self.reader),
                 _ => report.format.render_class(grades, passed_over),
             };
             match (&report.file, report.format) {
                 (None, Format::Text) => {
-                    keep(make("the report", || text(grades)).and_then(|text| console::report(&text)));
+                    keep(catch_render_panic("the report", || text(grades)).and_then(|text| console::report(&text)));
                 }
-                (None, _) => keep(make("the report", render).and_then(|text| console::print(text.as_bytes()))),
+                (None, _) => {
+                    keep(catch_render_panic("the report", render).and_then(|text| console::print(text.as_bytes())))
+                }
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
                 (Some(file), _) => {
                     keep(write(file, render).map(|()| output::print_path(file, report.format == Format::Html)))
@@ -207,7 +210,7 @@ fn is_step_summary(file: &Path) -> bool {
 
 /// Renders a text and appends it to a file.
 fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = make(&file.display().to_string(), text)?;
+    let text = catch_render_panic(&file.display().to_string(), text)?;
     let opened = open_for_writing(fs::OpenOptions::new().create(true).append(true), file);
     let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
     written.with_context(|| format!("cannot write {}", file.display()))
@@ -215,18 +218,18 @@ fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
 
 /// Renders a text and writes it to a file.
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = make(&file.display().to_string(), text)?;
+    let text = catch_render_panic(&file.display().to_string(), text)?;
     output::write(file, text.as_bytes())
 }
 
 /// Renders a text and writes it to a file in the folder for results.
 fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<()> {
-    let place = Place::new(folder, name);
-    let text = make(&place.path().display().to_string(), text)?;
-    output::write_at(&place, text.as_bytes())
+    let place = FilePlace::new(folder, name);
+    let text = catch_render_panic(&place.path().display().to_string(), text)?;
+    output::write_below(&place, text.as_bytes())
 }
 
 /// Calls `text` and returns its result. If it panics, returns an error.
-fn make<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
+fn catch_render_panic<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     catch_panic(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

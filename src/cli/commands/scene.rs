@@ -5,7 +5,7 @@ use crate::{
         console, output,
         selection::Selection,
     },
-    files::{FileError, Place},
+    files::{FileError, FilePlace},
     report::{number::format_count, scene as report},
     scene::{self, MAX_SCENE_BYTES},
     suite::library,
@@ -55,12 +55,12 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {
         let xml = library::scene(name).context("a scene that was just listed")?;
-        let place = Place::new(&arguments.output, format!("{name}.xml"));
+        let place = FilePlace::new(&arguments.output, format!("{name}.xml"));
         match has_contents(&place, xml) {
             Some(true) => kept += 1,
             Some(false) if !arguments.force => other.push(place.path()),
             _ => {
-                output::write_at(&place, xml)?;
+                output::write_below(&place, xml)?;
                 written += 1;
             }
         }
@@ -78,7 +78,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
 }
 
 /// Returns whether a file has exactly this content; `None` if there is no such file.
-fn has_contents(place: &Place, bytes: &[u8]) -> Option<bool> {
+fn has_contents(place: &FilePlace, bytes: &[u8]) -> Option<bool> {
     match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),
         Err(FileError::Missing { .. }) => None,

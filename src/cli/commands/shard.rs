@@ -5,7 +5,7 @@ use crate::{
         arguments::grade::{GradeArguments as Arguments, MAX_SHARDS, ShardArgument},
         console, output,
     },
-    files::{FileError, Place},
+    files::{FileError, FilePlace},
     suite::{Grade, SkippedEntry, Submission, plan::Plan, running_build, score},
 };
 use anyhow::{Context, Result, bail};
@@ -64,7 +64,7 @@ impl SharedInputs {
 
 /// The results of a shard.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Part {
+pub(super) struct ShardResult {
     pub(super) common: SharedInputs,
     /// The number of the shard, from 1.
     pub(super) number: usize,
@@ -75,7 +75,7 @@ pub(super) struct Part {
     pub(super) passed_over: Vec<SkippedEntry>,
 }
 
-impl Part {
+impl ShardResult {
     /// Reads the results of a shard from a folder; `None` if the folder contains none, or if the shard is not complete.
     ///
     /// # Errors
@@ -83,7 +83,7 @@ impl Part {
     /// Fails if the file can't be read, or was written by a different version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(SHARD_FILE);
-        let opened = match Place::new(folder, SHARD_FILE).open_file(MAX_BYTES) {
+        let opened = match FilePlace::new(folder, SHARD_FILE).open_file(MAX_BYTES) {
             Ok((opened, length)) => opened.take(length),
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
@@ -130,7 +130,7 @@ pub(super) struct Sharding {
     /// The folder in which the shard's results are stored.
     pub(super) folder: PathBuf,
     /// The path of the shard's file. No link on it is followed.
-    begun: Place,
+    begin_mark: FilePlace,
 }
 
 impl Sharding {
@@ -151,12 +151,12 @@ impl Sharding {
             plan: plan_digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
-        let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
-        Self { shard, common, folder: begun.path(), begun }
+        let begun = FilePlace::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
+        Self { shard, common, folder: begun.path(), begin_mark: begun }
     }
 
     /// Returns the submissions that belong to the shard.
-    pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
+    pub(super) fn select_submissions(&self, all: Vec<Submission>) -> Vec<Submission> {
         select_own(self.shard.number, self.shard.total, &all).cloned().collect()
     }
 
@@ -167,8 +167,8 @@ impl Sharding {
     ///
     /// Fails if the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
-        self.begun.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
-        let place = Place::new(&self.folder, SHARD_FILE);
+        self.begin_mark.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
+        let place = FilePlace::new(&self.folder, SHARD_FILE);
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
 
@@ -179,8 +179,8 @@ impl Sharding {
     /// Fails if the file can't be written.
     pub(super) fn end(&self, grades: &[Grade], passed_over: &[SkippedEntry]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
-        let part = Part { common, number, grades: grades.to_vec(), passed_over };
-        output::write_at(&Place::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
+        let part = ShardResult { common, number, grades: grades.to_vec(), passed_over };
+        output::write_below(&FilePlace::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         console::print_remark(format!(
             "shard {} of {}: {own} of {all} submissions\n",

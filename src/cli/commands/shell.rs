@@ -50,15 +50,15 @@ const BASH_REPLACEMENTS: [(&str, &str); 2] = [
 ];
 
 /// Prints completions and ends the program, if a completion script asks for them.
-pub(in crate::cli) fn complete_if_asked() {
-    CompleteEnv::with_factory(|| with_names(Arguments::command()))
+pub(in crate::cli) fn complete_if_requested() {
+    CompleteEnv::with_factory(|| add_completions(Arguments::command()))
         .var(COMPLETION_VARIABLE)
         .bin(PROGRAM_NAME)
         .complete();
 }
 
 /// Returns the command line, with completions for the names of suites, scenes, traces and mistakes.
-fn with_names(command: Command) -> Command {
+fn add_completions(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             let names = plan::built_in_names().filter_map(|name| name.strip_suffix("@1").map(str::to_owned));
@@ -73,7 +73,7 @@ fn with_names(command: Command) -> Command {
         })),
         _ => argument,
     });
-    completed.mut_subcommands(with_names)
+    completed.mut_subcommands(add_completions)
 }
 
 fn complete_names(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<CompletionCandidate> {

@@ -1,5 +1,5 @@
 //! The command `shrink`, which finds the smallest scene on which a program is still wrong for the same reason.
-use super::probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks, note, report};
+use super::probes::{Drawing, ExaminedProgram, ProgramUnderTest, describe_end, judge_case, named_tasks, report};
 use crate::{
     cli::{
         arguments::{ExplainFormat, ShrinkArguments},
@@ -9,13 +9,13 @@ use crate::{
     diagnose::{Explanation, ExplanationTopic, is_named_in},
     judge::{Finding, Rules, replay},
     report::{
-        by_hand::first_step,
+        calculation::first_step,
         case::Case,
         check::{Check, StepChoice, WrongSteps},
         diagnosis::Diagnosis,
-        foreign::quote,
         page::Card,
         style::Style,
+        untrusted_text::quote,
     },
     scene,
     shrink::{SmallScene, WrongReason, step_starts},
@@ -84,7 +84,7 @@ pub(super) fn add_smallest(
     let runs = runs.filter(|((case, _), _)| !case.accepted && is_chosen(&case.scene));
     let wrong = runs.map(|((case, task), (ended, _))| WrongScene { task, explanations: &case.explanations, ended });
     let wrong: Vec<WrongScene<'_>> = wrong.collect();
-    let (run_limits, name) = (shorten_limits(&program.limits()), program.program.display().to_string());
+    let (run_limits, name) = (shorten_limits(&program.run_limits()), program.program.display().to_string());
     let (runner, assignment) = (program.runner(&run_limits), program.assignment);
     let shrinker = Shrinker { runner, program: &program.program, assignment, limits };
     let causes = group_causes(&diagnosis.common, &wrong);
@@ -111,9 +111,9 @@ pub(super) fn describe(
     drawing: Drawing,
 ) -> (SmallestScene, Option<Card>) {
     let ShrunkScene { reason, origin, scene: SmallScene { scene, step, is_minimal }, observation: seen, runs } = small;
-    let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
+    let note = FailureKind::from_end(&seen.ended).and_then(|_| describe_end(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
-    let (case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
+    let (case, card, _) = judge_case(names, false, scene, &seen.trace[..], note, drawing);
     // If the program does not end well but its steps are right, the card would show two equal motions.
     let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     let Case { trace: program, note, first, explanations, .. } = case;
@@ -130,7 +130,7 @@ pub(super) fn describe(
         note,
         first_finding: first,
         explanations: match reason {
-            WrongReason::Mistake(cause) => limit_explanations(drawing.hints, vec![with_example(cause, explanations)]),
+            WrongReason::Mistake(cause) => limit_explanations(drawing.hints, vec![add_example(cause, explanations)]),
             _ => explanations,
         },
         ..SmallestScene::default()
@@ -148,7 +148,7 @@ pub(super) fn describe(
 }
 
 /// Returns the explanation of the cause, but with the example from the smallest scene.
-fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
+fn add_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
     match named.or_else(|| own.first()) {
         // The explanation of missed pairs counts them over the whole run.
@@ -187,6 +187,6 @@ mod tests {
     fn what_fits_a_single_sample_is_not_shown() {
         let wrong = Explanation::for_wrong_polynomials(Vec::new(), PolynomialEvidence::Nothing);
         let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
-        assert_eq!([1, 2].map(|samples| with_example(&fitted(samples), Vec::new()).details.len()), [0, 1]);
+        assert_eq!([1, 2].map(|samples| add_example(&fitted(samples), Vec::new()).details.len()), [0, 1]);
     }
 }

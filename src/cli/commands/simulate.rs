@@ -12,7 +12,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 
 pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
-    let scene = input::scene(&arguments.scene)?;
+    let scene = input::read_scene(&arguments.scene)?;
     let inputs: Vec<_> = scene.identity.into_iter().collect();
     let output = match &arguments.output {
         Some(name) => Output::create(name, &inputs)?,
@@ -40,7 +40,14 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     let name = arguments.output.as_ref().map(|name| input::printable_name(name));
     let searches = simulation.search_counts();
     let audited = arguments.audit.then_some(searches);
-    let summary = SimulationSummary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
+    let summary = SimulationSummary {
+        scene: &scene.name,
+        output: name.as_deref(),
+        steps,
+        counts,
+        written_trace: written,
+        audit_counts: audited,
+    };
     match (to_stdout, arguments.format) {
         (true, TextOrJson::Text) => console::print_remark(summary.text(Style::Plain)),
         (true, TextOrJson::Json) => console::print_remark(summary.json()),

@@ -22,7 +22,7 @@ const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
 /// The reason why a folder with results is not a submission.
-const RESULTS_OF_A_GRADING: &str = "it contains the results of a grading";
+const RESULT_FOLDER_REASON: &str = "it contains the results of a grading";
 
 /// The maximum number of entries in a class's folder.
 const MAX_ENTRIES: usize = 100_000;
@@ -30,7 +30,7 @@ const MAX_ENTRIES: usize = 100_000;
 /// The submissions that the command line names, and the skipped entries, which are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
-    pub(super) passed_over: Vec<SkippedEntry>,
+    pub(super) skipped_entries: Vec<SkippedEntry>,
 }
 
 /// A submission, before its name is known.
@@ -70,18 +70,18 @@ impl<'a> Search<'a> {
         for path in &self.arguments.programs {
             let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
             if !data.is_dir() {
-                refuse_scene(path)?;
+                reject_scene(path)?;
                 found.push(Entry { path: path.clone(), folder: path.clone(), program: None, is_folder: false });
             } else if self.arguments.single {
-                found.push(self.folder(path));
+                found.push(self.folder_entry(path));
             } else if self.arguments.programs.len() > 1 && self.is_results(path) {
-                skip_entry(&mut passed_over, path, RESULTS_OF_A_GRADING);
-            } else if self.is_one(path) {
-                found.push(self.folder(path));
+                skip_entry(&mut passed_over, path, RESULT_FOLDER_REASON);
+            } else if self.is_submission(path) {
+                found.push(self.folder_entry(path));
             } else {
                 match self.gather_entries(path, &mut found, &mut passed_over) {
                     // An empty folder in a class must not stop the others. Its grade says what is missing.
-                    Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder(path)),
+                    Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder_entry(path)),
                     other => other?,
                 }
             }
@@ -96,19 +96,19 @@ impl<'a> Search<'a> {
         let submissions = submissions
             .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
             .collect();
-        Ok(FoundSubmissions { submissions, passed_over })
+        Ok(FoundSubmissions { submissions, skipped_entries: passed_over })
     }
 
     /// Returns the submission in a folder. If the suite builds submissions, the folder contains sources; otherwise a
     /// program. If the program is missing, the submission is at fault, and its grade says so.
-    fn folder(&self, path: &Path) -> Entry {
+    fn folder_entry(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
     /// Returns whether a folder is a single submission. It then contains the program, or the first file that the
     /// suite's build needs.
-    fn is_one(&self, path: &Path) -> bool {
+    fn is_submission(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
         let tool = build.command.first().map(String::as_str).unwrap_or_default();
@@ -140,16 +140,16 @@ impl<'a> Search<'a> {
         for path in &paths {
             let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let why = match fs::symlink_metadata(path) {
-                _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
-                _ if path.file_name().is_some_and(fosssim_intake::is_litter) => {
+                _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULT_FOLDER_REASON.to_owned(),
+                _ if path.file_name().is_some_and(fosssim_intake::is_system_file) => {
                     "it is from a file manager or a build tool".to_owned()
                 }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
                     "its name begins with a dot; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_dir() && self.is_results(path) => RESULTS_OF_A_GRADING.to_owned(),
+                Ok(data) if data.is_dir() && self.is_results(path) => RESULT_FOLDER_REASON.to_owned(),
                 Ok(data) if data.is_dir() => {
-                    found.push(self.folder(path));
+                    found.push(self.folder_entry(path));
                     continue;
                 }
                 Ok(data) if data.is_symlink() => {
@@ -203,7 +203,7 @@ fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<S
         return None;
     }
     let mut start = Vec::new();
-    let opened = Folder::to_write(folder).map_err(|error| error.to_string()).and_then(|folder| {
+    let opened = Folder::open_to_write(folder).map_err(|error| error.to_string()).and_then(|folder| {
         folder.open_file(path.file_name().unwrap_or_default(), u64::MAX).map_err(|error| error.to_string())
     });
     let read = opened.and_then(|(file, _)| {
@@ -228,7 +228,7 @@ fn program_entry(folder: &Path, path: &Path) -> Entry {
 }
 
 /// Returns an error if a scene was named instead of a program.
-fn refuse_scene(path: &Path) -> Result<()> {
+fn reject_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::printable_name(path);
         bail!(
@@ -267,7 +267,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let mut name = |(path, own): (&&Path, &OsString)| {
         let shown = file_names::to_printable(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => file_names::to_printable(unique_end(path, paths).as_os_str()),
+            same if same[own.as_os_str()] > 1 => file_names::to_printable(find_unique_end(path, paths).as_os_str()),
             same if same.len() > 1 => file_names::to_exact(own),
             _ => shown,
         };
@@ -283,7 +283,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
 }
 
 /// Returns the shortest end of a path that no other path has.
-fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
+fn find_unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
@@ -294,7 +294,7 @@ fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
 fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<ProgramFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;
-        let (identity, owner) = Folder::to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
+        let (identity, owner) = Folder::open_to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
         let folder = entry.is_folder.then(|| fs::metadata(&entry.folder).ok()).flatten();
         Some((identity, folder.map(|folder| folder.uid() == owner)))
     };

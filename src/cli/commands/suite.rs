@@ -1,7 +1,7 @@
 //! The command `suite`, which writes, checks and explains suites.
 use super::{
     suite_report::{SuiteContents, UndecidedScene, list, list_json, text},
-    suite_sight::seen_parts,
+    visible_mistakes::find_visible_mistakes,
 };
 use crate::{
     cli::{
@@ -18,30 +18,31 @@ use rayon::prelude::*;
 pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
     match suite {
         SuiteCommand::Init(SuiteInitArguments { name, output }) => {
-            let text = template(name.as_deref())?;
+            let text = suite_template(name.as_deref())?;
             match output {
                 Some(file) if file.is_file() => {
                     bail!("{} exists, and may contain your changes; choose another file, or remove it", file.display())
                 }
-                Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
+                Some(file) => Output::create(file, &[])?.finish_and_print(text.as_bytes(), false),
                 None => console::print(&text),
             }
         }
         SuiteCommand::Check(SuiteCheckArguments { suite, missing, mistakes }) => {
             let plan = plan::find_suite(suite)?;
-            let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
-            let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
+            let parts = if *mistakes { find_visible_mistakes(&plan) } else { Vec::new() };
+            let contents =
+                SuiteContents { coverage: measure_coverage(&plan), lists_missing: *missing, visible_parts: parts };
             console::report(&text(&plan, &contents, &find_undecided(&plan), console::style()))
         }
         SuiteCommand::List(SuiteListArguments { format }) => {
-            let suites = built_in()?;
+            let suites = list_built_in()?;
             console::show(*format, || list(&suites, console::style()), || list_json(&suites))
         }
     }
 }
 
 /// Returns a suite with comments, and with the groups of a built-in suite.
-fn template(name: Option<&str>) -> Result<String> {
+fn suite_template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::suite_template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
@@ -50,7 +51,7 @@ fn template(name: Option<&str>) -> Result<String> {
 }
 
 /// Returns the names of the built-in suites, and their plans.
-fn built_in() -> Result<Vec<(String, plan::Plan)>> {
+fn list_built_in() -> Result<Vec<(String, plan::Plan)>> {
     plan::built_in_names().map(|name| plan::find_suite(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
@@ -63,7 +64,7 @@ fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
 
 /// Measures what the scenes contain, on all cores. Scenes that can't be simulated to their end are left out, because
 /// `undecided` contains them.
-fn coverage(plan: &plan::Plan) -> Coverage {
+fn measure_coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().filter_map(|task| Coverage::for_scene(&task.scene).ok());
     all.reduce(Coverage::default, |mut one, other| {

@@ -1,12 +1,12 @@
 //! The text that `suite check` prints: what a suite contains, and what to know before grading. Also the list of suites.
-use super::suite_sight::{MAX_LISTED_SCENES, SeenPart};
+use super::visible_mistakes::{MAX_LISTED_SCENES, VisibleMistakes};
 use crate::{
     judge::{PairText, PassText, Rules, fair::Borderline},
     report::{
-        foreign::one_line,
         grade::format_points,
         number::format_count,
-        style::{Look, Style},
+        style::{Style, TextStyle},
+        untrusted_text::to_one_line,
         view::to_key,
     },
     sim::StepError,
@@ -34,7 +34,7 @@ pub(super) struct SuiteContents {
     /// Whether the report lists the missing pairs of properties.
     pub(super) lists_missing: bool,
     /// The mistakes that no scene shows, by area of the assignment; empty if they were not requested.
-    pub(super) parts: Vec<SeenPart>,
+    pub(super) visible_parts: Vec<VisibleMistakes>,
 }
 
 /// Renders the whole report. `undecided` has the scenes with decisions that round-off may change.
@@ -44,8 +44,8 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         text += &describe_group(group, style);
     }
     text += &describe_contents(contents, style);
-    text += &describe_mistakes(&contents.parts, style);
-    let unknown = notes_on_unknown(plan, style);
+    text += &describe_mistakes(&contents.visible_parts, style);
+    let unknown = describe_unknown_features(plan, style);
     text += &unknown.concat();
     for (scene, found) in undecided {
         text += &describe_note(scene, found, style);
@@ -54,7 +54,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         0 => String::new(),
         notes => format!("; {} above", format_count(notes as u64, "note")),
     };
-    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is valid"), describe_size(plan));
+    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(TextStyle::Good, "The suite is valid"), describe_size(plan));
     text
 }
 
@@ -65,7 +65,7 @@ const SCHEMA: u32 = 2;
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
-        let size = style.paint(Look::Faint, &format!("({})", describe_size(plan)));
+        let size = style.paint(TextStyle::Faint, &format!("({})", describe_size(plan)));
         let default = if *name == default_name() { ", the default" } else { "" };
         format!("{name:width$}  {}{default} {size}\n", plan.name)
     };
@@ -129,14 +129,14 @@ const fn describe_credit(credit: Credit) -> &'static str {
 
 fn render_head(plan: &Plan, style: Style) -> String {
     let mut text = String::new();
-    let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), describe_size(plan));
-    let _ = writeln!(text, "run: {}", one_line(&plan.command.join(" ")));
+    let _ = writeln!(text, "{}: {}", style.paint(TextStyle::Strong, &to_one_line(&plan.name)), describe_size(plan));
+    let _ = writeln!(text, "run: {}", to_one_line(&plan.command.join(" ")));
     if let Some(build) = &plan.build {
         let _ = writeln!(
             text,
             "build: {} (makes {}), {} s, {} MiB",
-            one_line(&build.command.join(" ")),
-            one_line(&build.program),
+            to_one_line(&build.command.join(" ")),
+            to_one_line(&build.program),
             build.wall.as_secs_f64(),
             build.memory >> 20
         );
@@ -158,7 +158,7 @@ fn render_head(plan: &Plan, style: Style) -> String {
     for level in levels {
         let (hints, meaning) = level.describe();
         let groups = plan.groups.iter().filter(|group| group.marking.hints == level);
-        let groups: Vec<String> = groups.map(|group| one_line(&group.name)).collect();
+        let groups: Vec<String> = groups.map(|group| to_one_line(&group.name)).collect();
         let of_groups = if several { format!(" of {}", groups.join(", ")) } else { String::new() };
         let _ = writeln!(text, "hints for students{of_groups}: {hints}: {meaning}");
     }
@@ -168,7 +168,7 @@ fn render_head(plan: &Plan, style: Style) -> String {
 fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
     let (points, visibility) = (counted_points(marking.points), to_key(&marking.visibility).replace('_', " "));
-    let name = style.paint(Look::Strong, &one_line(&group.name));
+    let name = style.paint(TextStyle::Strong, &to_one_line(&group.name));
     let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.is_extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
@@ -183,7 +183,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     for task in &group.scenes {
         let particles = format_count(task.scene.particles.len() as u64, "particle");
         let steps = format_count(task.scene.step_count().into(), "step");
-        let _ = writeln!(text, "  {} ({particles}, {steps})", one_line(&task.name));
+        let _ = writeln!(text, "  {} ({particles}, {steps})", to_one_line(&task.name));
     }
     text
 }
@@ -194,7 +194,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     if coverage.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "Events in the scenes' steps, by pairs of properties");
+    let title = style.paint(TextStyle::Strong, "Events in the scenes' steps, by pairs of properties");
     let mut text = format!("\n{title}\n");
     let width = FAMILIES.iter().map(|family| family.name.len()).max().unwrap_or(0);
     let (mut all_seen, mut all) = (0, 0);
@@ -212,15 +212,15 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
 }
 
 /// Lists the known mistakes that no scene shows.
-fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
+fn describe_mistakes(parts: &[VisibleMistakes], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by area");
+    let title = style.paint(TextStyle::Strong, "Known mistakes that a scene shows, by area");
     let mut text = format!("\n{title}\n");
     let width = parts.iter().map(|part| to_key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
-    for SeenPart { area, all, unseen, rare } in parts {
+    for VisibleMistakes { area, mistake_count: all, invisible_mistakes: unseen, rarely_visible: rare } in parts {
         (all_seen, together) = (all_seen + all - unseen.len(), together + all);
         let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", to_key(area), all - unseen.len());
         if !unseen.is_empty() {
@@ -235,19 +235,19 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
 }
 
 /// Returns a note for each scene that programs of the suite's milestone cannot run completely.
-fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
+fn describe_unknown_features(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
-    let note = style.paint(Look::Notice, "note");
+    let note = style.paint(TextStyle::Notice, "note");
     let scenes = plan.scenes().filter_map(|task| {
         let unknown = task.scene.unknown_features(milestone).map(|unknown| unknown.to_string());
-        Some((one_line(&task.name), unknown.reduce(|all, one| all + ", " + &one)?))
+        Some((to_one_line(&task.name), unknown.reduce(|all, one| all + ", " + &one)?))
     });
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
 /// Returns a note on a scene. It is not an error, but worth knowing before a class is graded.
 fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
-    let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
+    let (note, scene) = (style.paint(TextStyle::Notice, "note"), to_one_line(scene));
     let found = match found {
         Ok(found) => found,
         Err(error) => return format!("\n{note}: {scene} can't be simulated to its end: {error}\n"),

@@ -14,8 +14,8 @@ use anyhow::{Result, bail};
 
 /// Prints a summary of a trace. If the trace can't be read to its end, the exit code is 1.
 pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
-    let scene = input::scene(&arguments.scene)?;
-    let mut trace = input::trace(&arguments.trace)?;
+    let scene = input::read_scene(&arguments.scene)?;
+    let mut trace = input::open_trace(&arguments.trace)?;
     let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
     trace.ensure_not_failed()?;
     let json = || report::info_json(&scene.name, &trace.name, &summary);
@@ -25,8 +25,8 @@ pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
 
 /// Shows one step of a trace.
 pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
-    let scene = input::scene(&arguments.scene)?;
-    let mut trace = input::trace(&arguments.trace)?;
+    let scene = input::read_scene(&arguments.scene)?;
+    let mut trace = input::open_trace(&arguments.trace)?;
     let steps = scene.scene.step_count();
     let step = arguments.step;
     if step > steps {
@@ -50,7 +50,7 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
             records.push(ShownRecord {
                 number,
                 offset: reader.record_offset(),
-                mid: layout.is_mid_record(number),
+                is_mid: layout.is_mid_record(number),
                 frame: frame.clone(),
                 notes: reader.notes().iter().map(ToString::to_string).collect(),
             });

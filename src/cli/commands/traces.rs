@@ -1,16 +1,16 @@
 //! The option `grade --traces`, which judges existing traces. Each submission is a folder of traces. No program is run,
 //! so no sandbox is needed. The duration of the run and the way in which it ended are unknown.
 use super::{
-    compare,
-    ending::{MAX_HARDEST, exit_code, text, text_detail},
+    earlier_grades,
+    grade_ending::{MAX_HARDEST, exit_code, text, text_detail},
     pages::{self, Pages},
-    results::{Report, Results, refuse_several, wanted_pages},
+    results::{Report, Results, find_wanted_pages, reject_several},
     submissions::distinct_names,
 };
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, input::unpack, selection::Selection},
     files::{FileError, Folder},
-    report::{foreign::one_line, number::format_count},
+    report::{number::format_count, untrusted_text::to_one_line},
     suite::{
         EarlierGrade, Grade, SceneResult, SceneTask, cards::JudgedTrace, catch_panic, plan::Plan, result::Failure,
         traces,
@@ -38,19 +38,19 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
             );
         }
     }
-    refuse_several(reports, arguments.programs.len(), "")?;
+    reject_several(reports, arguments.programs.len(), "")?;
     let folder = arguments.output.as_deref();
     if let Some(output) = folder {
-        Folder::make(output).with_context(|| format!("cannot make {}", output.display()))?;
+        Folder::create(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
-    let pages = wanted_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
+    let pages = find_wanted_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
-    compare::add(earlier, &mut grades);
+    earlier_grades::add_earlier_grades(earlier, &mut grades);
     for folder in &paths {
-        if let Some(strays) = Folder::open(folder).ok().and_then(|folder| describe_strays(&folder, &names)) {
-            console::print_remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));
+        if let Some(strays) = Folder::open(folder).ok().and_then(|folder| describe_other_traces(&folder, &names)) {
+            console::print_remark(format!("warning: {}\n", to_one_line(&format!("{}: {strays}", folder.display()))));
         }
     }
     let (reader, platform_hides) = (arguments.reader, arguments.platform_hides);
@@ -85,7 +85,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
 const MAX_NAMED: usize = 5;
 
 /// Describes the traces in a folder and its subfolders that do not belong to any scene; `None` if there are none.
-fn describe_strays(folder: &Folder, scenes: &[String]) -> Option<String> {
+fn describe_other_traces(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
         let names = folder.names().unwrap_or_default();
         names.iter().map(|name| name.to_string_lossy().into_owned()).collect()
@@ -142,7 +142,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         };
         let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
         (result.card, result.card_for_students) =
-            pages.drawing(&draw).store_cards(&judged, plan.student_hints(&task.name))?;
+            pages.new_cards(&draw).store_cards(&judged, plan.student_hints(&task.name))?;
     }
     Ok((result, passed_over))
 }

@@ -7,12 +7,12 @@ pub(super) mod pair;
 mod scene;
 mod trace;
 
-pub(super) use scene::{SceneInput, scene};
-pub(super) use trace::{TraceInput, is_scene, trace, unpack};
+pub(super) use scene::{SceneInput, read_scene};
+pub(super) use trace::{TraceInput, is_scene, open_trace, unpack};
 
 use crate::files::open_for_reading;
 use crate::{
-    report::foreign::one_line,
+    report::untrusted_text::to_one_line,
     suite::{library, suggestions},
 };
 use anyhow::{Result, bail};
@@ -25,22 +25,22 @@ use std::{
 /// Returns the name of a file as the user typed it, in printable form. A file of somebody else may have terminal codes
 /// in its name.
 pub(super) fn printable_name(name: &Path) -> String {
-    one_line(&name.display().to_string())
+    to_one_line(&name.display().to_string())
 }
 
 /// Returns the part of a name after `asset:`, if the name begins with that.
-pub(super) fn asset(name: &Path) -> Option<&str> {
+pub(super) fn asset_name(name: &Path) -> Option<&str> {
     name.to_str()?.strip_prefix("asset:")
 }
 
-fn no_asset(what: &str, name: &str) -> String {
+fn describe_missing_asset(what: &str, name: &str) -> String {
     let near = suggestions::find_nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
-    let name = one_line(name);
+    let name = to_one_line(name);
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
 /// Returns the error for a file that does not exist. If an embedded file has this name, the message suggests `asset:`.
-fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
+fn suggest_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
     match known
         .filter(|known| error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *known))
@@ -52,7 +52,7 @@ fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
 
 /// Opens a file. If it is a pipe, its other end is not waited for. Folders are rejected.
 pub(super) fn open(name: &Path) -> Result<(File, Metadata)> {
-    let (file, metadata) = open_for_reading(name).map_err(|error| or_asset(name, error))?;
+    let (file, metadata) = open_for_reading(name).map_err(|error| suggest_asset(name, error))?;
     if metadata.is_dir() {
         bail!("it is a directory; name a file inside");
     }

@@ -15,7 +15,7 @@ use anyhow::{Context, Result, anyhow, bail};
 pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
     let word = points.remove(0);
-    let kind = kind_of(word)?;
+    let kind = parse_kind(word)?;
     let moving = |index: usize| parse_moving(points[index]);
     let fixed = |index: usize| parse_vector(points[index]);
     let expect = |count: usize, what: &str| {
@@ -28,12 +28,12 @@ pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<Pa
     Ok(match kind {
         PairKind::ParticleParticle => {
             expect(2, "the two centers")?;
-            PairMotion::Particles { centers: [moving(0)?, moving(1)?], radii: radii_of(radii()?)? }
+            PairMotion::Particles { centers: [moving(0)?, moving(1)?], radii: parse_radii(radii()?)? }
         }
         PairKind::ParticleEdge => {
             expect(3, "the particle's center and the ends of the edge")?;
             let ends = [moving(1)?, moving(2)?];
-            PairMotion::Edge { center: moving(0)?, ends, radii: radii_of(radii()?)? }
+            PairMotion::Edge { center: moving(0)?, ends, radii: parse_radii(radii()?)? }
         }
         PairKind::ParticleHalfPlane => {
             expect(3, "the particle's center, a point on the boundary, the normal")?;
@@ -43,7 +43,7 @@ pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<Pa
             if normal == Vec2::zeros() {
                 bail!("the half-plane's normal is zero");
             }
-            PairMotion::HalfPlane { center: moving(0)?, radius: not_negative(radius)?, point: fixed(1)?, normal }
+            PairMotion::HalfPlane { center: moving(0)?, radius: require_nonnegative(radius)?, point: fixed(1)?, normal }
         }
     })
 }
@@ -55,7 +55,7 @@ pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<Pa
 /// Fails if the scene has no such pair, or detection never checks it.
 pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
-    let kind = kind_of(kind)?;
+    let kind = parse_kind(kind)?;
     let (first, second) = indices.split_once(',').context("two indices are needed, as in pe:3,1")?;
     let index = |text: &str, count: usize, what: &str| -> Result<u32> {
         let index: u32 = text.trim().parse().with_context(|| format!("`{text}` is not an index"))?;
@@ -86,7 +86,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     }
 }
 
-fn kind_of(word: &str) -> Result<PairKind> {
+fn parse_kind(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
         let meant = suggestions::suggest(word, names);
@@ -132,14 +132,14 @@ fn parse_vector(word: &str) -> Result<Vec2> {
     Ok(Vec2::new(parse_number(x).with_context(advice)?, parse_number(y).with_context(advice)?))
 }
 
-fn radii_of(word: &str) -> Result<[f64; 2]> {
+fn parse_radii(word: &str) -> Result<[f64; 2]> {
     let advice = || format!("`{word}` is not a pair of radii; write R,R as in 1,0.5");
     let (first, second) = word.split_once(',').with_context(advice)?;
-    let radius = |text| parse_number(text).and_then(not_negative).with_context(advice);
+    let radius = |text| parse_number(text).and_then(require_nonnegative).with_context(advice);
     Ok([radius(first)?, radius(second)?])
 }
 
-fn not_negative(radius: f64) -> Result<f64> {
+fn require_nonnegative(radius: f64) -> Result<f64> {
     if radius < 0.0 {
         bail!("a radius is negative");
     }

@@ -1,9 +1,9 @@
 //! Reads scenes as inputs. The reader is strict, and reports all problems together.
-use super::{asset, no_asset, open, printable_name, trace::ZSTD_MAGIC};
+use super::{asset_name, describe_missing_asset, open, printable_name, trace::ZSTD_MAGIC};
 use crate::files::{Identity, read_limited};
 use crate::{
     cli::console,
-    report::problems,
+    report::scene_problems,
     scene::{self, LoadedScene, MAX_SCENE_BYTES},
     suite::library,
 };
@@ -26,17 +26,17 @@ pub(in crate::cli) struct SceneInput {
 /// # Errors
 ///
 /// Fails if the scene can't be read or has errors. The message lists all errors with their places.
-pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
+pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
     let shown = printable_name(name);
     if name == Path::new("-") {
         bail!("a scene is read from a file; only a trace may come from standard input");
     }
-    let (bytes, identity) = match asset(name) {
+    let (bytes, identity) = match asset_name(name) {
         Some(asset) => {
-            let scene = library::scene(asset).with_context(|| no_asset("scene", asset))?;
+            let scene = library::scene(asset).with_context(|| describe_missing_asset("scene", asset))?;
             (scene.to_vec(), None)
         }
-        None => scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
+        None => read_scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
     };
     if is_binary(&bytes) {
         bail!("{shown} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE");
@@ -45,11 +45,11 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         Ok(LoadedScene { scene, warnings, .. }) => {
             // Warnings about embedded scenes would not help the user.
             if identity.is_some() {
-                console::print_remark(problems::render_warnings(&shown, &bytes, &warnings));
+                console::print_remark(scene_problems::render_warnings(&shown, &bytes, &warnings));
             }
             Ok(SceneInput { name: shown, scene, identity })
         }
-        Err(refused) => bail!("{}", problems::render_errors(&shown, &bytes, &refused)),
+        Err(refused) => bail!("{}", scene_problems::render_errors(&shown, &bytes, &refused)),
     }
 }
 
@@ -61,7 +61,7 @@ fn is_binary(bytes: &[u8]) -> bool {
 }
 
 /// Returns the content of a scene file. Its size is limited generously.
-fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
+fn read_scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
     let bytes = read_limited(file, &metadata, MAX_SCENE_BYTES as u64)?;
     Ok((bytes, Some(Identity::from_metadata(&metadata))))

@@ -1,9 +1,9 @@
 //! Reads traces as inputs. They are streams, and are decompressed while they are read.
-use super::{asset, no_asset, open, printable_name};
+use super::{asset_name, describe_missing_asset, open, printable_name};
 use crate::files::{Identity, with_timeout};
 use crate::{
     cli::output::has_extension,
-    report::check::{SNIFFED_BYTES, looks_like},
+    report::check::{SNIFFED_BYTES, detect_file_kind},
     scene::Scene,
     suite::library,
     trace::{Layout, Reader},
@@ -73,18 +73,18 @@ impl Failure {
 /// # Errors
 ///
 /// Fails if the trace can't be opened. Damage is detected only when the trace is read.
-pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
+pub(in crate::cli) fn open_trace(name: &Path) -> Result<TraceInput> {
     let shown = printable_name(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
     let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED_TRACE.0);
-    let (mut reader, identity): (Box<dyn Read + Send>, _) = if asset(name).filter(is_flawed).is_some() {
+    let (mut reader, identity): (Box<dyn Read + Send>, _) = if asset_name(name).filter(is_flawed).is_some() {
         (Box::new(library::FLAWED_TRACE.1), None)
-    } else if let Some(asset) = asset(name) {
-        let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
+    } else if let Some(asset) = asset_name(name) {
+        let recording = library::recording(asset).with_context(|| describe_missing_asset("recording", asset))?;
         (decompress(Box::new(Cursor::new(recording)), &[], &failure)?, None)
     } else if name == Path::new("-") {
-        let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
+        let reader = open_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?, None)
     } else {
         // If the user names a scene instead of a trace, that is a mistake of the user, and not a wrong trace. It is
@@ -95,13 +95,13 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
         let file = with_timeout(file, &metadata).with_context(context)?;
-        let reader = maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
+        let reader = open_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
         (reader.with_context(context)?, Some(Identity::from_metadata(&metadata)))
     };
     let mut start = Vec::new();
     // If bytes can't be read here, reading them again below reports it.
     let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
-    let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
+    let looks_like = if failure.get().is_none() { detect_file_kind(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
     Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
 }
@@ -149,7 +149,7 @@ const fn is_gzip(start: &[u8]) -> bool {
 }
 
 /// Returns a reader that decompresses, if the bytes begin like a zstd or a gzip file.
-fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
+fn open_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
@@ -174,7 +174,7 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
 pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
     let failure = Failure::default();
     let mut bytes = Vec::new();
-    let read = maybe_packed(Box::new(file), false, &failure)
+    let read = open_packed(Box::new(file), false, &failure)
         .map_err(io::Error::other)
         .and_then(|reader| reader.take(most).read_to_end(&mut bytes));
     match (read, failure.get()) {

@@ -17,7 +17,7 @@ fn nothing_beneath_a_folder_is_reached_by_a_link_or_waited_for() {
     File::create(at("sparse")).unwrap().set_len(1 << 40).unwrap();
     let _socket = std::os::unix::net::UnixListener::bind(at("socket")).unwrap();
     fifo(&at("fifo"));
-    for folder in [Folder::open(inside.path()).unwrap(), Folder::to_write(inside.path()).unwrap()] {
+    for folder in [Folder::open(inside.path()).unwrap(), Folder::open_to_write(inside.path()).unwrap()] {
         assert_eq!(folder.read(OsStr::new("a/b/file"), 4).unwrap(), b"text");
         assert_eq!(folder.read(OsStr::new("./a/./b/file"), 4).unwrap(), b"text");
         for (name, expected) in [
@@ -41,7 +41,7 @@ fn nothing_beneath_a_folder_is_reached_by_a_link_or_waited_for() {
         let mut names = folder.names().unwrap();
         names.sort();
         assert_eq!(names, ["a", "fifo", "link", "socket", "sparse", "way"]);
-        assert!(folder.make_folder(OsStr::new("way")).unwrap_err().to_string().contains("a link"));
+        assert!(folder.create_folder(OsStr::new("way")).unwrap_err().to_string().contains("a link"));
     }
 }
 
@@ -54,7 +54,7 @@ fn what_is_written_takes_the_place_of_whatever_has_its_name() {
     std::os::unix::fs::symlink(&other, at("link")).unwrap();
     fs::hard_link(&other, at("hard")).unwrap();
     fifo(&at("fifo"));
-    let folder = Folder::to_write(inside.path()).unwrap();
+    let folder = Folder::open_to_write(inside.path()).unwrap();
     for name in ["link", "hard", "fifo", "new"] {
         folder.write(OsStr::new(name), b"ours").unwrap();
         assert_eq!(folder.read(OsStr::new(name), 4).unwrap(), b"ours", "{name}");
@@ -74,7 +74,7 @@ fn a_file_that_is_written_in_place_is_one_of_the_folders_own() {
     fs::write(outside.path().join("other"), b"untouched").unwrap();
     std::os::unix::fs::symlink(outside.path().join("other"), at("link")).unwrap();
     fifo(&at("fifo"));
-    let folder = Folder::to_write(inside.path()).unwrap();
+    let folder = Folder::open_to_write(inside.path()).unwrap();
     assert!(folder.own_file("link").unwrap_err().to_string().contains("a symbolic link"));
     assert!(folder.own_file("fifo").unwrap_err().to_string().contains("a pipe"));
     io::Write::write_all(&mut folder.own_file("journal").unwrap(), b"line").unwrap();

@@ -119,7 +119,7 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
         assert!(!judged.name.ends_with(&troubled), "no picture of this");
         None
     };
-    let folder = Place::new("", "cards");
+    let folder = FilePlace::new("", "cards");
     let cards = Some(Cards { folder: &folder, draw: &draw, for_students: false });
     let grader = Grader { cards, ..stage.grader(&plan) };
     let (failed, fault, _) = grade(&grader, &submission, &memory);

@@ -55,7 +55,7 @@ impl FolderResults {
             let path = folder.join(name);
             move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
         };
-        let opened = Folder::to_write(folder).map_err(at(""))?;
+        let opened = Folder::open_to_write(folder).map_err(at(""))?;
         let lock = open_own_file(&opened, LOCK_FILE).map_err(at(LOCK_FILE))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => io::Error::other(format!(

@@ -73,7 +73,7 @@ fn main() -> anyhow::Result<ExitCode> {
         .max()
         .context("no traces")?;
     let wrong: Vec<_> = rows.into_iter().zip(&results).filter(|(row, _)| row.kind == RowKind::Wrong).collect();
-    count(&wrong);
+    count_recognized(&wrong);
     println!("slowest: {row} on {scene}, {slowest:.2?}");
     count_together(&wrong);
     println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
@@ -81,7 +81,7 @@ fn main() -> anyhow::Result<ExitCode> {
 }
 
 /// Counts the recognized mistakes, and the traces.
-fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
+fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let best = |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|one| is(&one.0))).count();
     let all = |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|one| is(&one.0)).count();
     println!(

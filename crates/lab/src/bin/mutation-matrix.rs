@@ -30,7 +30,7 @@ enum Answer {
     /// as too small. The factor of the polynomials is the cause, and the program really behaves differently.
     Lost,
     /// The trace is rejected.
-    Refused,
+    Rejected,
 }
 
 /// The names of all rule books.
@@ -43,7 +43,7 @@ const FAIR_BOOK: usize = 1;
 type MatrixCell = [Answer; RULE_BOOKS.len()];
 
 fn parity_answer(outcome: &Outcome) -> Answer {
-    if outcome.parity.overall == Overall::Passed { Answer::Accepted } else { Answer::Refused }
+    if outcome.parity.overall == Overall::Passed { Answer::Accepted } else { Answer::Rejected }
 }
 
 fn fair_answer(outcome: &Outcome) -> Answer {
@@ -55,7 +55,7 @@ fn fair_answer(outcome: &Outcome) -> Answer {
         {
             Answer::Lost
         }
-        _ => Answer::Refused,
+        _ => Answer::Rejected,
     }
 }
 
@@ -77,13 +77,13 @@ fn main() -> anyhow::Result<ExitCode> {
         .map(|(row, _)| row.id)
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
-    let uncaught = mistakes(&rows, &matrix, FAIR_BOOK, false).len();
+    let uncaught = list_mistakes(&rows, &matrix, FAIR_BOOK, false).len();
     let accuses = !find_rejected(FAIR_BOOK, &rows, &cases, &matrix).is_empty();
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
 /// Returns the mistakes that at least one scene catches under a rule book, or those that none catches.
-fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool) -> Vec<&'static str> {
+fn list_mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
         .filter(|(row, cells)| row.kind == RowKind::Wrong && caught == cells.iter().any(|cell| is_rejected(cell, book)))
@@ -118,7 +118,7 @@ fn compute_cell(case: &WatchedScene, row: &Row) -> MatrixCell {
 
 /// Returns whether a rule book rejects the trace.
 fn is_rejected(cell: &MatrixCell, book: usize) -> bool {
-    cell[book] == Answer::Refused
+    cell[book] == Answer::Rejected
 }
 
 fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], matrix: &[Vec<MatrixCell>]) {
@@ -137,14 +137,14 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], ma
                 Answer::Same => '.',
                 Answer::Accepted => '-',
                 Answer::Lost => 'l',
-                Answer::Refused => 'X',
+                Answer::Rejected => 'X',
             })
             .collect();
         println!("  {:36} {marks}", row.id);
     }
     println!();
-    println!("  {} mistakes caught\n", mistakes(rows, matrix, book, true).len());
-    print_list("mistakes that no scene catches", &mistakes(rows, matrix, book, false));
+    println!("  {} mistakes caught\n", list_mistakes(rows, matrix, book, true).len());
+    print_list("mistakes that no scene catches", &list_mistakes(rows, matrix, book, false));
     let mut scenes: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (row, scene) in find_rejected(book, rows, cases, matrix) {
         scenes.entry(row.id).or_default().push(scene);

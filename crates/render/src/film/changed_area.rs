@@ -14,7 +14,7 @@ impl ChangedArea {
     /// Returns the smallest rectangle outside of which two pictures of one byte per pixel are equal. If they are equal
     /// everywhere, the rectangle is one pixel, because a film has no empty pictures. The first picture of a film has no
     /// previous one, and its rectangle is the whole picture.
-    pub fn between(size: Size, before: &[u8], after: &[u8]) -> Self {
+    pub fn from_pictures(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };
         }
@@ -47,7 +47,7 @@ impl ChangedArea {
     }
 
     /// Returns the bytes of the rectangle, row by row.
-    pub fn cut(self, size: Size, bytes: &[u8]) -> Vec<u8> {
+    pub fn extract(self, size: Size, bytes: &[u8]) -> Vec<u8> {
         let row = size.width() as usize;
         let mut part = Vec::with_capacity(self.width as usize * self.height as usize);
         for y in self.top..self.top + self.height {
@@ -76,9 +76,9 @@ mod tests {
         ] {
             let mut after = before.clone();
             dots.iter().for_each(|&(x, y)| after[y * 20 + x] = 1);
-            let part = ChangedArea::between(size, &before, &after);
+            let part = ChangedArea::from_pictures(size, &before, &after);
             assert_eq!([part.left, part.top, part.width, part.height], expected, "{dots:?}");
-            assert_eq!(part.cut(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
+            assert_eq!(part.extract(size, &after).iter().filter(|&&byte| byte == 1).count(), dots.len());
         }
     }
 }

@@ -19,8 +19,8 @@ pub struct Gif<'a> {
     rate: Rate,
     palette: Vec<Rgb>,
     /// The palette indices of known colors.
-    known: HashMap<[u8; 3], u8>,
-    before: Vec<u8>,
+    known_indices: HashMap<[u8; 3], u8>,
+    previous_picture: Vec<u8>,
     pictures: u64,
 }
 
@@ -30,12 +30,20 @@ impl<'a> Gif<'a> {
     /// # Errors
     /// Fails if `out` cannot be written, or the pictures are larger than a GIF allows.
     pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
-        let palette = palette(colors);
+        let palette = build_palette(colors);
         let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();
         let mut encoder =
             gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(to_io_error)?;
         encoder.set_repeat(gif::Repeat::Infinite).map_err(to_io_error)?;
-        Ok(Self { encoder, size, rate, palette, known: HashMap::new(), before: Vec::new(), pictures: 0 })
+        Ok(Self {
+            encoder,
+            size,
+            rate,
+            palette,
+            known_indices: HashMap::new(),
+            previous_picture: Vec::new(),
+            pictures: 0,
+        })
     }
 
     /// Appends a picture.
@@ -43,7 +51,7 @@ impl<'a> Gif<'a> {
     /// # Errors
     /// Fails if it cannot be written.
     pub fn write_picture(&mut self, raster: &Raster) -> io::Result<()> {
-        let (palette, known) = (&self.palette, &mut self.known);
+        let (palette, known) = (&self.palette, &mut self.known_indices);
         let after: Vec<u8> = raster
             .rgba()
             .chunks_exact(4)
@@ -52,7 +60,7 @@ impl<'a> Gif<'a> {
                 *known.entry(color).or_insert_with(|| nearest_index(palette, color))
             })
             .collect();
-        let part = ChangedArea::between(self.size, &self.before, &after);
+        let part = ChangedArea::from_pictures(self.size, &self.previous_picture, &after);
         // Delays are hundredths of a second, chosen so that their sum is right at every rate.
         let at = |pictures: u64| 100 * pictures / u64::from(self.rate.per_second());
         let delay = at(self.pictures + 1) - at(self.pictures);
@@ -63,11 +71,11 @@ impl<'a> Gif<'a> {
             top: side(part.top),
             width: side(part.width),
             height: side(part.height),
-            buffer: part.cut(self.size, &after).into(),
+            buffer: part.extract(self.size, &after).into(),
             ..gif::Frame::default()
         };
         self.encoder.write_frame(&frame).map_err(to_io_error)?;
-        self.before = after;
+        self.previous_picture = after;
         self.pictures += 1;
         Ok(())
     }
@@ -94,7 +102,7 @@ fn to_io_error(error: gif::EncodingError) -> io::Error {
 }
 
 /// Returns at most 256 colors: the given ones first, then steps toward the first one, then a cube of all colors.
-fn palette(colors: &[Rgb]) -> Vec<Rgb> {
+fn build_palette(colors: &[Rgb]) -> Vec<Rgb> {
     let background = colors.first().copied().unwrap_or(Rgb::WHITE);
     let mut palette = Vec::new();
     let mut seen = BTreeSet::new();
@@ -135,11 +143,11 @@ mod tests {
     #[test]
     fn the_scenes_colors_are_exact() {
         let many: Vec<Rgb> = (0..200).map(|k| Rgb([k, 255 - k, 7])).collect();
-        let palette = palette(&many);
+        let palette = build_palette(&many);
         assert_eq!(palette.len(), 256);
         for color in many {
             assert_eq!(palette[usize::from(nearest_index(&palette, color.0))], color);
         }
-        assert!(super::palette(&[]).len() <= 256);
+        assert!(super::build_palette(&[]).len() <= 256);
     }
 }

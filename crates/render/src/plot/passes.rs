@@ -43,7 +43,7 @@ impl PassPlot<'_> {
             }
             let x = columns.x(range.start);
             // A step with a difference represents its column.
-            let place = range.clone().find(|&place| self.differs(place));
+            let place = range.clone().find(|&place| self.has_difference(place));
             if place.is_some() {
                 differing.push(x);
             }
@@ -66,7 +66,7 @@ impl PassPlot<'_> {
         sheet.finish()
     }
 
-    fn differs(&self, place: usize) -> bool {
+    fn has_difference(&self, place: usize) -> bool {
         match (self.expected.get(place), self.actual.get(place)) {
             (Some(expected), Some(actual)) => Some(*expected) != *actual,
             _ => false,
@@ -76,8 +76,8 @@ impl PassPlot<'_> {
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
-        let differing = (0..compared).filter(|&place| self.differs(place)).count();
-        let first = (0..compared).find(|&place| self.differs(place));
+        let differing = (0..compared).filter(|&place| self.has_difference(place)).count();
+        let first = (0..compared).find(|&place| self.has_difference(place));
         let first = first.map_or_else(String::new, |place| {
             let actual = self.actual[place].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
             format!("; the first is step {} with {actual}, expected {}", place + 1, self.expected[place])

@@ -1,16 +1,16 @@
 //! Advice about where to look in the program. If there is no likely mistake, the advice depends on the kind of the
 //! first finding.
-use super::{Check, first};
+use super::{Check, first_finding};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
 /// Returns the advice. It is empty if the explanations name a known mistake or a polynomial, because they are
 /// sufficient then.
-pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
-    let Some(first) = first::find_first(check) else { return Vec::new() };
+pub(crate) fn advice_lines(check: &Check<'_>) -> Vec<&'static str> {
+    let Some(first) = first_finding::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
-        Some(known) if known.names_stage() => explanation::where_to_look(known).into_iter().collect(),
+        Some(known) if known.names_stage() => explanation::describe_search_area(known).into_iter().collect(),
         Some(_) => Vec::new(),
         None => finding_advice(first, check.outcome.collisions).to_vec(),
     }

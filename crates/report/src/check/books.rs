@@ -1,28 +1,28 @@
 //! The verdicts of both rule books, one line for each. The tables of findings are shown on request.
-use super::{Check, fair, follows};
+use super::{Check, consequences, fair};
 use crate::{
     number::format_count,
-    style::{Look, Style},
+    style::{Style, TextStyle},
 };
 use fosssim_judge::{Overall, fair::find_cause};
 
 /// The verdict of one rule book: the book's name, the style and the text of the verdict, and the reason for it.
-pub(crate) type BookWords = (&'static str, Look, &'static str, String);
+pub(crate) type BookVerdict = (&'static str, TextStyle, &'static str, String);
 
 /// Returns the verdicts of both books; `None` if the headline already contains them.
-pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
+pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
     let (look, word) = match outcome.parity.overall {
-        Overall::Passed => (Look::Good, "passed"),
-        Overall::Failed => (Look::Bad, "failed"),
-        Overall::None => (Look::Notice, "no verdict"),
+        Overall::Passed => (TextStyle::Good, "passed"),
+        Overall::Failed => (TextStyle::Bad, "failed"),
+        Overall::None => (TextStyle::Notice, "no verdict"),
     };
     let mut found: Vec<String> = Vec::new();
     let total = outcome.parity.findings.counts.total();
     found.extend((total > 0).then(|| format_count(total, "finding")));
-    let follow = follows::count(outcome);
-    found.extend((follow > 0).then(|| format!("among them {}", follows::describe(follow))));
+    let follow = consequences::count_consequences(outcome);
+    found.extend((follow > 0).then(|| format!("among them {}", consequences::describe_consequences(follow))));
     let parity = ("the original's rules", look, word, found.join(", "));
     let (look, word) = fair::verdict(judgement);
     Some([parity, ("the fair rules", look, word, fair::summarize(judgement, outcome))])
@@ -30,13 +30,13 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
 
 /// Renders the section about the rule books; `None` if the headline already contains the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
-    let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
+    let mut text = format!("{}\n", style.paint(TextStyle::Strong, "Rule books"));
     for (name, look, word, grounds) in verdicts(check)? {
         let grounds = if grounds.is_empty() { grounds } else { format!(": {grounds}") };
         text += &format!("  {name}: {}{grounds}\n", style.paint(look, word));
     }
     if let Some(cause) = find_cause(check.outcome) {
-        text += &format!("  {} {cause}\n", style.paint(Look::Notice, "They differ:"));
+        text += &format!("  {} {cause}\n", style.paint(TextStyle::Notice, "They differ:"));
     }
     Some(text)
 }

@@ -1,7 +1,7 @@
 //! Shows the first difference, with the expected and the actual values side by side.
 use super::super::{
     number::{format_exact, format_g},
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Cell, Table},
 };
 use fosssim_judge::{Finding, FindingDetail, PowerText, RescaledCoefficient, find_differing_powers, find_factor};
@@ -11,7 +11,7 @@ use fosssim_model::trace::LoggedImpulse;
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     format!(
         "{}\n{}",
-        style.paint(Look::Strong, &format!("First difference: {}", describe_place(finding, steps))),
+        style.paint(TextStyle::Strong, &format!("First difference: {}", describe_place(finding, steps))),
         render_finding(finding, style)
     )
 }
@@ -69,9 +69,9 @@ pub(crate) struct Row {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
     /// Lines above the table. They give the position in the trace, for readers who inspect its bytes.
-    before: Vec<String>,
+    remarks_before: Vec<String>,
     pub(crate) rows: Vec<Row>,
-    pub(crate) after: Vec<String>,
+    pub(crate) remarks_after: Vec<String>,
     /// A line about the values that the original compares, if they differ from those in the table.
     original: Option<String>,
 }
@@ -84,11 +84,14 @@ impl SideBySide {
             table.heading(["", "expected", "actual", ""]);
         }
         for Row { name, expected, actual, differs } in &self.rows {
-            let mark = |text: String| if *differs { Cell::with_look(Look::Bad, text) } else { text.into() };
+            let mark = |text: String| if *differs { Cell::with_style(TextStyle::Bad, text) } else { text.into() };
             let word = if *differs { "<- differs" } else { "" };
             table.row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
         }
-        lines(&self.before) + &table.render(style) + &lines(&self.after) + &lines(self.original.as_slice())
+        lines(&self.remarks_before)
+            + &table.render(style)
+            + &lines(&self.remarks_after)
+            + &lines(self.original.as_slice())
     }
 }
 
@@ -104,14 +107,14 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             rows(collision_rows(Some((*expected).into()), Some(*actual)))
         }
         FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
-            after: vec![format!("one pass over all pairs has {per_pass}")],
+            remarks_after: vec![format!("one pass over all pairs has {per_pass}")],
             ..rows(vec![count_row("polynomials", *expected, *actual)])
         },
         FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
             let more = actual_size.saturating_sub(actual.coefficients().len());
             let mut sides = polynomials(place, expected.coefficients(), actual.coefficients());
             if more > 0 {
-                sides.after.push(format!("{more} further coefficients of the trace are not shown"));
+                sides.remarks_after.push(format!("{more} further coefficients of the trace are not shown"));
             }
             sides
         }
@@ -125,7 +128,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
             // This is the same factor with which the finding was judged.
             let factor = if own == 0.0 { find_factor(reference, trace) } else { expected / own };
-            let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
+            let mut sides = compare_with_factor(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
                 let (power, actual, expected) = (PowerText(*power), format_exact(*actual), format_exact(*expected));
                 format!("(after the original's rescaling: {power} {actual}, expected {expected})")
@@ -139,7 +142,9 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         FindingDetail::PassPositions { place }
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
-        | FindingDetail::MixedForms { place } => SideBySide { before: vec![logged_by(place)], ..SideBySide::default() },
+        | FindingDetail::MixedForms { place } => {
+            SideBySide { remarks_before: vec![describe_logging_pass(place)], ..SideBySide::default() }
+        }
         _ => SideBySide::default(),
     }
 }
@@ -153,18 +158,18 @@ fn number_row(name: &'static str, expected: f64, actual: f64) -> Row {
     Row { name, expected: Value::Number(expected), actual: Value::Number(actual), differs }
 }
 
-fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
+fn describe_logging_pass(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("polynomial {} of the record", place.index)
 }
 
 /// Compares two polynomials power by power. Coefficients that differ after division by the common factor are marked.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
-    polynomials_with(place, expected, actual, find_factor(expected, actual), None)
+    compare_with_factor(place, expected, actual, find_factor(expected, actual), None)
 }
 
 /// Compares two polynomials power by power. `factor` scales the expected values. The coefficients of `power` are known
 /// to differ.
-fn polynomials_with(
+fn compare_with_factor(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
     actual: &[f64],
@@ -192,9 +197,9 @@ fn polynomials_with(
         format_g(factor)
     );
     SideBySide {
-        before: vec![logged_by(place)],
+        remarks_before: vec![describe_logging_pass(place)],
         rows: (0..powers).rev().map(row).collect(),
-        after: if is_one { Vec::new() } else { vec![carried] },
+        remarks_after: if is_one { Vec::new() } else { vec![carried] },
         original: None,
     }
 }

@@ -1,8 +1,8 @@
 //! The section about the fair rules in the check report for people.
 use super::super::{
     number::{count, format_g},
-    share,
-    style::{Look, Style},
+    step_share,
+    style::{Style, TextStyle},
     table::{Align, Table},
 };
 use fosssim_findings::{BookFindings, Cause};
@@ -14,7 +14,7 @@ use fosssim_judge::{
 /// Renders the section about the fair rules; `None` if they did not judge.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
-    let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
+    let mut text = style.paint(TextStyle::Strong, "Fair rules") + "\n";
     let (look, word) = verdict(fair);
     let mut line = |words: String| text += &format!("  {words}\n");
     line(format!("{}: {}", style.paint(look, word), summarize(fair, outcome)));
@@ -54,7 +54,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &describe_kinds(&fair.findings, style);
     }
     if let Some(cause) = find_cause(outcome) {
-        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), describe_sides(cause));
+        let (heading, sides) = (style.paint(TextStyle::Notice, "The rule books differ:"), describe_sides(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
@@ -72,11 +72,11 @@ pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
 }
 
 /// Returns the text of the verdict and its style.
-pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
+pub(super) const fn verdict(fair: &Judgement) -> (TextStyle, &'static str) {
     match fair.verdict {
-        FairVerdict::Accepted => (Look::Good, "accepted"),
-        FairVerdict::Rejected => (Look::Bad, "rejected"),
-        FairVerdict::None => (Look::Notice, "undecided"),
+        FairVerdict::Accepted => (TextStyle::Good, "accepted"),
+        FairVerdict::Rejected => (TextStyle::Bad, "rejected"),
+        FairVerdict::None => (TextStyle::Notice, "undecided"),
     }
 }
 
@@ -94,7 +94,7 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
     let found = fair.findings.first_divergence.as_ref().map(|first| {
         let wrong = match fair.findings.wrong_steps {
             0 => "the first record is wrong".to_owned(),
-            many => share::describe_wrong(many, outcome.steps, count),
+            many => step_share::describe_wrong(many, outcome.steps, count),
         };
         let first = match first.step {
             0 if fair.findings.wrong_steps == 0 => String::new(),
@@ -108,7 +108,7 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
     let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
-        parts if parts.is_empty() => share::describe_right(outcome.steps, count),
+        parts if parts.is_empty() => step_share::describe_right(outcome.steps, count),
         parts => parts.join("; "),
     }
 }

@@ -5,23 +5,23 @@
 //! (`schemas/check.schema.json`). Both have the same content, which depends only on the outcome.
 
 pub(crate) mod advice;
-mod asked;
 pub(crate) mod books;
-mod closer;
+pub(crate) mod consequences;
 pub(crate) mod divergence;
 mod fair;
 mod fair_view;
-pub(crate) mod first;
-pub(crate) mod follows;
-mod looks_like;
+mod file_signature;
+pub(crate) mod first_finding;
+mod further_commands;
 mod steps;
 mod text;
+mod verdict_gaps;
 
-pub use asked::{describe_no_verdict, describe_unread, is_wrong};
-pub use looks_like::{SNIFFED_BYTES, looks_like};
+pub use file_signature::{SNIFFED_BYTES, detect_file_kind};
 pub use steps::{MAX_LISTED, StepChoice, WrongSteps};
 pub use text::describe_stop;
 pub(crate) use text::{describe_problem, list_notes, render_headline};
+pub use verdict_gaps::{describe_no_verdict, describe_unread, needs_explanation};
 
 use super::{
     annotation::render_annotation,
@@ -92,7 +92,7 @@ impl Check<'_> {
     }
 
     /// Returns the findings by the official rule book.
-    fn account(&self) -> &BookFindings {
+    fn findings(&self) -> &BookFindings {
         self.outcome.findings_by(self.book())
     }
 
@@ -116,8 +116,8 @@ impl Check<'_> {
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.is_accepted() {
             let place = self.outcome.stop_by(self.book()).map(|stop| describe_stop(&stop, self.outcome));
-            let first = first::find_first(self).map(|first| first.to_string());
-            let likely = explain::render_sentence(self.explanations).filter(|_| !first::is_other_scene(self));
+            let first = first_finding::find_first(self).map(|first| first.to_string());
+            let likely = explain::render_sentence(self.explanations).filter(|_| !first_finding::is_other_scene(self));
             let words: Vec<String> =
                 [Some(text::render_headline(self)), place, first, likely].into_iter().flatten().collect();
             text += &render_annotation("error", &title, &words.join("; "));
@@ -189,14 +189,14 @@ view! {
         difference: Option<CauseView> = find_cause(check.outcome).as_ref().map(CauseView::from),
         /// The first finding by the official rule book; null if there is none.
         first_divergence: Option<FindingView> =
-            check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
+            check.findings().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
         /// For each kind of finding by the official rule book, the number of findings and the first one.
         findings: Vec<CountedView> =
-            CountedView::count(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
+            CountedView::count(check.book(), &check.findings().examples, |kind| check.findings().counts.get(kind)),
         /// Advice that fits the kind of the first finding.
-        advice: Vec<&'static str> = advice::lines(check),
+        advice: Vec<&'static str> = advice::advice_lines(check),
         /// Commands with which a reader sees more of the first finding.
-        commands: Vec<String> = closer::list_commands(check),
+        commands: Vec<String> = further_commands::list_commands(check),
         /// Further facts about the trace, such as damage, or bytes after its end.
         notes: Vec<String> = text::list_notes(check),
         /// Likely mistakes, the likeliest first. The list is empty if nothing is wrong, and with --no-explain.
@@ -206,7 +206,7 @@ view! {
         /// The number of steps that were judged.
         steps_judged: u32 = check.outcome.steps_judged,
         /// The number of steps with at least one finding by the official rule book.
-        wrong_steps: u64 = check.account().wrong_steps,
+        wrong_steps: u64 = check.findings().wrong_steps,
         /// The numbers of the wrong steps, from 1. Only the first 1000 are listed.
         #[schemars(length(max = MAX_LISTED), inner(range(min = 1)))]
         wrong_step_numbers: Vec<u32> = steps::step_numbers(check),

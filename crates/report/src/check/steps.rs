@@ -2,7 +2,7 @@
 //! actual values.
 use super::super::{
     number::{count, format_count},
-    style::{Look, Style},
+    style::{Style, TextStyle},
 };
 use super::{Check, divergence, fair_view::CountedView};
 use fosssim_judge::{
@@ -31,22 +31,22 @@ pub enum StepChoice {
 struct Step {
     number: u32,
     /// The first finding of each kind.
-    firsts: Vec<Finding>,
+    first_findings: Vec<Finding>,
     /// The number of findings of each kind after the first.
-    more: FindingCounts,
+    further_counts: FindingCounts,
 }
 
 /// The wrong steps by one rule book, in order, up to [`MAX_LISTED`].
 #[derive(Debug, Clone, Default)]
 struct Steps {
     numbers: Vec<u32>,
-    kept: Vec<Step>,
+    kept_steps: Vec<Step>,
 }
 
 /// Collects the wrong steps while a trace is judged.
 #[derive(Debug, Clone, Default)]
 pub struct WrongSteps {
-    shown: StepChoice,
+    shown_steps: StepChoice,
     parity: Steps,
     fair: Steps,
 }
@@ -55,11 +55,11 @@ impl WrongSteps {
     /// Creates an empty collection that keeps the steps selected by `shown`.
     #[must_use]
     pub fn new(shown: StepChoice) -> Self {
-        Self { shown, ..Self::default() }
+        Self { shown_steps: shown, ..Self::default() }
     }
 
     /// Returns the wrong steps by a rule book, including findings that can be made only at the end of the trace.
-    fn findings_of(&self, book: Book, account: &BookFindings) -> Steps {
+    fn steps_of_book(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
             Book::Fair => self.fair.clone(),
@@ -69,7 +69,7 @@ impl WrongSteps {
                 first_findings: std::slice::from_ref(finding),
                 further_counts: FindingCounts::default(),
             };
-            steps.add(finding.step, findings, &self.shown);
+            steps.add(finding.step, findings, &self.shown_steps);
         }
         steps
     }
@@ -77,8 +77,8 @@ impl WrongSteps {
 
 impl Progress for WrongSteps {
     fn observe_wrong_step(&mut self, wrong: &WrongStep<'_>) {
-        self.parity.add(wrong.step, wrong.parity, &self.shown);
-        self.fair.add(wrong.step, wrong.fair, &self.shown);
+        self.parity.add(wrong.step, wrong.parity, &self.shown_steps);
+        self.fair.add(wrong.step, wrong.fair, &self.shown_steps);
     }
 }
 
@@ -101,29 +101,32 @@ impl Steps {
         if !wanted {
             return;
         }
-        let place = match self.kept.binary_search_by_key(&step, |kept| kept.number) {
+        let place = match self.kept_steps.binary_search_by_key(&step, |kept| kept.number) {
             Ok(place) => place,
-            Err(_) if self.kept.len() >= MAX_LISTED => return,
+            Err(_) if self.kept_steps.len() >= MAX_LISTED => return,
             Err(place) => {
-                self.kept.insert(place, Step { number: step, firsts: Vec::new(), more: FindingCounts::default() });
+                self.kept_steps.insert(
+                    place,
+                    Step { number: step, first_findings: Vec::new(), further_counts: FindingCounts::default() },
+                );
                 place
             }
         };
-        let kept = &mut self.kept[place];
+        let kept = &mut self.kept_steps[place];
         for first in findings.first_findings {
-            if !kept.firsts.iter().any(|known| known.kind() == first.kind()) {
-                kept.firsts.push(*first);
+            if !kept.first_findings.iter().any(|known| known.kind() == first.kind()) {
+                kept.first_findings.push(*first);
             }
         }
-        kept.more += findings.further_counts;
+        kept.further_counts += findings.further_counts;
     }
 }
 
 /// Returns the wrong steps by the official rule book, or those by the other one if the official one has none.
-fn steps_of(check: &Check<'_>) -> (Book, Steps) {
-    let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
+fn official_steps(check: &Check<'_>) -> (Book, Steps) {
+    let of = |book| (book, check.steps.steps_of_book(book, check.outcome.findings_by(book)));
     let official = of(check.book());
-    if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.includes_fair() {
+    if official.1.numbers.is_empty() && official.1.kept_steps.is_empty() && check.rules.includes_fair() {
         return of(Book::Fair);
     }
     official
@@ -131,40 +134,40 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
 
 /// Returns the numbers of the wrong steps by the official rule book, up to [`MAX_LISTED`].
 pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
-    check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
+    check.steps.steps_of_book(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
 /// Returns whether the report shows only particular steps that the user requested.
 pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
-    matches!(check.steps.shown, StepChoice::These(_))
+    matches!(check.steps.shown_steps, StepChoice::These(_))
 }
 
 /// Returns whether the user requested all wrong steps.
 pub(super) fn are_all_requested(check: &Check<'_>) -> bool {
-    check.steps.shown == StepChoice::All
+    check.steps.shown_steps == StepChoice::All
 }
 
 /// Returns the requested steps and the findings in each; `None` if no step was requested.
-fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
-    let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
-    match &check.steps.shown {
+fn find_requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
+    let found = |number: u32| steps.kept_steps.iter().find(|step| step.number == number);
+    match &check.steps.shown_steps {
         StepChoice::None => None,
-        StepChoice::All => Some(steps.kept.iter().map(|step| (step.number, Some(step))).collect()),
+        StepChoice::All => Some(steps.kept_steps.iter().map(|step| (step.number, Some(step))).collect()),
         StepChoice::These(asked) => Some(asked.iter().map(|&number| (number, found(number))).collect()),
     }
 }
 
 /// Renders the section about single steps. Returns `None` if no step was requested, or if none of them is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
-    let (book, steps) = steps_of(check);
+    let (book, steps) = official_steps(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
         Some(step) => render_step(check, step, style),
-        None => format!("{}\n", style.paint(Look::Strong, &describe_right(check, number))),
+        None => format!("{}\n", style.paint(TextStyle::Strong, &describe_right(check, number))),
     };
-    let mut text = requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
+    let mut text = find_requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
-    let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
-    if check.steps.shown == StepChoice::All && shown < wrong {
+    let shown = steps.kept_steps.iter().filter(|step| step.number > 0).count() as u64;
+    if check.steps.shown_steps == StepChoice::All && shown < wrong {
         text += &format!("\n{} more are wrong; --step N shows any of them\n", format_count(wrong - shown, "step"));
     }
     (!text.is_empty()).then_some(text)
@@ -185,18 +188,18 @@ fn describe_right(check: &Check<'_>, step: u32) -> String {
 }
 
 fn render_step(check: &Check<'_>, step: &Step, style: Style) -> String {
-    let findings = step.firsts.len() as u64 + step.more.total();
-    let frame = step.firsts.first().map_or(0, |first| first.frame);
+    let findings = step.first_findings.len() as u64 + step.further_counts.total();
+    let frame = step.first_findings.first().map_or(0, |first| first.frame);
     let heading = match step.number {
         0 => format!("First record: {}", format_count(findings, "finding")),
         number => {
             format!("Step {number} of {}, frame {frame}: {}", check.outcome.steps, format_count(findings, "finding"))
         }
     };
-    let mut text = style.paint(Look::Strong, &heading) + "\n";
-    for finding in &step.firsts {
+    let mut text = style.paint(TextStyle::Strong, &heading) + "\n";
+    for finding in &step.first_findings {
         text += &divergence::render_finding(finding, style);
-        match step.more.get(finding.kind()) {
+        match step.further_counts.get(finding.kind()) {
             0 => {}
             more => text += &format!("  and {} more of this kind ({})\n", count(more), finding.kind()),
         }
@@ -217,9 +220,10 @@ pub(super) struct WrongStepView {
 
 /// Returns the requested steps for the report in JSON; `None` if no step was requested.
 pub(super) fn step_views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
-    let (book, steps) = steps_of(check);
-    let counted = |step: &Step| CountedView::count(book, &step.firsts, |kind| 1 + step.more.get(kind));
+    let (book, steps) = official_steps(check);
+    let counted =
+        |step: &Step| CountedView::count(book, &step.first_findings, |kind| 1 + step.further_counts.get(kind));
     let view =
         |(step, found): (u32, Option<&Step>)| WrongStepView { step, findings: found.map(counted).unwrap_or_default() };
-    Some(requested_steps(check, &steps)?.into_iter().map(view).collect())
+    Some(find_requested_steps(check, &steps)?.into_iter().map(view).collect())
 }

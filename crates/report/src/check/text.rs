@@ -3,14 +3,14 @@ use super::{
     super::{
         explain,
         number::{count, format_count, format_g},
-        share,
-        style::{Look, Style},
+        step_share,
+        style::{Style, TextStyle},
         table::{Align, Cell, Table},
         words,
     },
-    Check, advice, books, closer, divergence, fair,
-    first::{find_first, is_other_scene},
-    follows, steps,
+    Check, advice, books, consequences, divergence, fair,
+    first_finding::{find_first, is_other_scene},
+    further_commands, steps,
 };
 use fosssim_judge::{Book, BookFindings, MissingResult, Outcome, Overall, ReadFailure, Ruling, Stop};
 use fosssim_mistakes::diagnose::Explanation;
@@ -37,7 +37,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.extend(outcome.stop_by(check.book()).map(|stop| {
         let (place, message, advice) = describe_problem(&stop, outcome);
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
-        format!("{} {place}\n{lines}", style.paint(Look::Strong, "Stopped at"))
+        format!("{} {place}\n{lines}", style.paint(TextStyle::Strong, "Stopped at"))
     }));
     if steps::shows_only_these(check) {
         parts.extend(steps::render(check, style));
@@ -49,7 +49,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // If all steps are shown, the first finding is one of them.
     let first = find_first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
-    parts.extend(render_section("Where to look", "  - ", &advice::lines(check), style));
+    parts.extend(render_section("Where to look", "  - ", &advice::advice_lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));
     let has_tables = check.tables;
     if has_tables {
@@ -58,21 +58,21 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         let account = outcome.findings_by(check.book());
         // The findings by the fair rules have their own section.
         if !account.examples.is_empty() && check.book() == Book::Parity {
-            parts.push(render_findings(account, follows::count(outcome), style));
+            parts.push(render_findings(account, consequences::count_consequences(outcome), style));
         }
     } else {
         parts.extend(books::render(check, style));
     }
     parts.extend(render_section("Notes", "  - ", &list_notes(check), style));
     let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
-    let commands = render_section("Next", "  $ ", &closer::list_commands(check), style);
+    let commands = render_section("Next", "  $ ", &further_commands::list_commands(check), style);
     parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
     parts.join("\n")
 }
 
 /// Renders lines below a heading; `None` if there are no lines.
 fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
-    let heading = style.paint(Look::Strong, heading) + "\n";
+    let heading = style.paint(TextStyle::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
     (!lines.is_empty()).then(|| heading + &lines)
 }
@@ -85,7 +85,7 @@ fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let has_example = check.tables || find_first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
-    let mut lines = explain::lines(&shown, style);
+    let mut lines = explain::explanation_texts(&shown, style);
     if !more.is_empty() {
         lines.push(format!("and {} (--tables)", format_count(more.len() as u64, "less likely explanation")));
     }
@@ -93,7 +93,7 @@ fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
 }
 
 fn render_head(check: &Check<'_>, style: Style) -> String {
-    let look = if check.is_accepted() { Look::Good } else { Look::Bad };
+    let look = if check.is_accepted() { TextStyle::Good } else { TextStyle::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
     if check.is_not_a_trace() {
         return format!("{verdict}: {} {}\n", check.trace, render_headline(check));
@@ -113,7 +113,7 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no steps, so no step can be wrong".to_owned(),
-        Overall::Passed => format!("{} by the original's rules", share::describe_right(outcome.steps, count)),
+        Overall::Passed => format!("{} by the original's rules", step_share::describe_right(outcome.steps, count)),
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
             format!("no single step of {steps} is wrong, but a residual is above its tolerance")
@@ -121,7 +121,7 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
         Overall::Failed => {
             let first = outcome.parity.findings.first_divergence.map_or(0, |finding| finding.step);
             let first = if outcome.steps == 1 { String::new() } else { format!(", the first is step {first}") };
-            share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
+            step_share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
         }
         Overall::None => {
             let judged = count(u64::from(outcome.steps_judged_by(Book::Parity)));
@@ -222,7 +222,7 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
     table.heading(["residual", "value", "tolerance", "used", ""]);
     for (name, (value, bound)) in names.into_iter().zip(outcome.parity.residuals.with_bounds()) {
-        let verdict = if judged { pass_cell(value < bound) } else { "".into() };
+        let verdict = if judged { new_pass_cell(value < bound) } else { "".into() };
         table.row([
             name.into(),
             format_g(value).into(),
@@ -231,14 +231,14 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
             verdict,
         ]);
     }
-    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), pass_cell);
+    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), new_pass_cell);
     let wrong = count(outcome.parity.findings.counts.collisions());
     table.row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
-    format!("{}\n{}", style.paint(Look::Strong, "Rules of the original (parity)"), table.render(style))
+    format!("{}\n{}", style.paint(TextStyle::Strong, "Rules of the original (parity)"), table.render(style))
 }
 
-fn pass_cell(yes: bool) -> Cell {
-    if yes { Cell::with_look(Look::Good, "passed") } else { Cell::with_look(Look::Bad, "failed") }
+fn new_pass_cell(yes: bool) -> Cell {
+    if yes { Cell::with_style(TextStyle::Good, "passed") } else { Cell::with_style(TextStyle::Bad, "failed") }
 }
 
 /// Formats the share of a tolerance that a residual uses, for a table cell.
@@ -262,9 +262,9 @@ fn format_share(value: f64, bound: f64) -> String {
 fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let heading =
         format!("Findings: {} in {}", count(account.counts.total()), format_count(account.wrong_steps, "step"));
-    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::describe_kinds(account, style));
+    let mut text = format!("{}\n{}", style.paint(TextStyle::Strong, &heading), fair::describe_kinds(account, style));
     if follow > 0 {
-        text += &format!("  among them {}\n", follows::describe(follow));
+        text += &format!("  among them {}\n", consequences::describe_consequences(follow));
     }
     text
 }

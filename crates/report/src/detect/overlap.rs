@@ -2,7 +2,7 @@
 use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, render_motion, title};
 use crate::{
     number::format_exact,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     view::{WrittenNumber, to_document},
 };
 use fosssim_judge::overlap::OverlapStudy;
@@ -31,7 +31,7 @@ impl Overlap<'_> {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
-        style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene))
+        style.paint(TextStyle::Strong, &title(self.pair, self.step, self.trace, self.scene))
             + "\n"
             + &self.body(format_exact, style)
     }
@@ -39,7 +39,7 @@ impl Overlap<'_> {
     /// Renders the report without its title. `number` formats numbers.
     pub(crate) fn body(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
-        let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
+        let heading = |words: &str| format!("\n{}\n", style.paint(TextStyle::Strong, words));
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
         let mut text =
             "  simple collisions: the positions at the end of the step count, and the velocities there\n".to_owned();
@@ -66,8 +66,8 @@ impl Overlap<'_> {
         );
         text += &heading("Decision");
         let (look, words) = match study.collides {
-            true => (Look::Notice, "they collide, and the response changes their velocities"),
-            false => (Look::Good, "no collision: objects collide if they overlap and approach each other"),
+            true => (TextStyle::Notice, "they collide, and the response changes their velocities"),
+            false => (TextStyle::Good, "no collision: objects collide if they overlap and approach each other"),
         };
         text += &format!("  {}\n", style.paint(look, words));
         text += match study.is_certain {
@@ -75,7 +75,7 @@ impl Overlap<'_> {
             false => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(logged) = self.logged {
-            let look = if logged == study.collides { Look::Good } else { Look::Bad };
+            let look = if logged == study.collides { TextStyle::Good } else { TextStyle::Bad };
             let words = format!("the trace has {} collision of this pair", if logged { "a" } else { "no" });
             text += &format!("  {}\n", style.paint(look, &words));
         }

@@ -15,7 +15,7 @@ use fosssim_testing::{Need, skip};
 use std::{path::Path, slice, time::Duration};
 
 fn all() -> [Grade; 3] {
-    [samples::accepted_grade(), samples::failing_grade(), samples::fault()]
+    [samples::accepted_grade(), samples::failing_grade(), samples::failed_grade()]
 }
 
 fn schema(name: &str) -> serde_json::Value {
@@ -102,7 +102,7 @@ fn gradescope_follows_its_schema() {
         assert_valid("gradescope.schema.json", &Format::Gradescope.render(&[grade]));
     }
     let document: serde_json::Value =
-        serde_json::from_str(&Format::Gradescope.render(&[samples::fault()])).expect("JSON");
+        serde_json::from_str(&Format::Gradescope.render(&[samples::failed_grade()])).expect("JSON");
     assert!(document.get("score").is_none(), "a fault of ours is nobody's zero");
     insta::assert_snapshot!(
         "grade_gradescope",
@@ -116,7 +116,7 @@ fn prairielearn_follows_its_schema() {
         assert_valid("prairielearn.schema.json", &Format::Prairielearn.render(&[grade]));
     }
     let document: serde_json::Value =
-        serde_json::from_str(&Format::Prairielearn.render(&[samples::fault()])).expect("JSON");
+        serde_json::from_str(&Format::Prairielearn.render(&[samples::failed_grade()])).expect("JSON");
     assert_eq!(document["gradable"], false);
     insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::failing_grade()]));
 }
@@ -148,24 +148,24 @@ fn what_is_wrong_with_a_submission_itself_is_said_once() {
     for format in
         [Format::Text, Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown]
     {
-        let document = format.render(&[samples::unfit()]).replace('\\', "");
+        let document = format.render(&[samples::unusable_grade()]).replace('\\', "");
         assert_eq!(document.matches(sentence).count(), 1, "{format:?}: {document}");
         assert!(document.contains("unusable submission") && !document.contains("run-time"), "{format:?}: {document}");
     }
     let gradescope: serde_json::Value =
-        serde_json::from_str(&Format::Gradescope.render(&[samples::unfit()])).expect("JSON");
+        serde_json::from_str(&Format::Gradescope.render(&[samples::unusable_grade()])).expect("JSON");
     assert_eq!((&gradescope["score"], gradescope["tests"].as_array().map(Vec::len)), (&0.0.into(), Some(3)));
     assert!(gradescope["output"].as_str().is_some_and(|output| output.contains(sentence)), "{gradescope:#}");
     assert_valid("gradescope.schema.json", &gradescope.to_string());
-    assert_valid("grade.schema.json", &Format::Json.render(&[samples::unfit()]));
-    let csv = csv_of_submissions(&[samples::unfit()], &[]);
+    assert_valid("grade.schema.json", &Format::Json.render(&[samples::unusable_grade()]));
+    let csv = csv_of_submissions(&[samples::unusable_grade()], &[]);
     assert!(csv.contains("dan,unusable submission,0,20,0,3,"), "{csv}");
-    insta::assert_snapshot!("grade_unfit_text", Format::Text.render(&[samples::unfit()]));
+    insta::assert_snapshot!("grade_unfit_text", Format::Text.render(&[samples::unusable_grade()]));
 }
 
 #[test]
 fn an_untouched_template_is_told_in_ten_lines() {
-    let grades = [samples::unwritten()];
+    let grades = [samples::unwritten_grade()];
     let text = Format::Text.render(&grades);
     assert!(text.lines().count() <= 10, "{text}");
     insta::assert_snapshot!("grade_unwritten_text", text);

@@ -13,7 +13,7 @@ pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 /// Returns the listed scenes, grouped by cause. Groups with likely mistakes are first, then causes by the number of
 /// their scenes. Skipped scenes follow, and last come accepted scenes on which the rule books differ.
 #[must_use]
-pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
+pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
     for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
@@ -87,8 +87,8 @@ mod tests {
     /// A program that never ends is stopped on some scenes, and is not run on the many that follow.
     #[test]
     fn the_first_cause_is_of_scenes_that_were_run() {
-        let grade = samples::endless();
-        let causes = by_cause(&grade);
+        let grade = samples::endless_grade();
+        let causes = group_by_cause(&grade);
         let names: Vec<Vec<&str>> =
             causes.iter().map(|scenes| scenes.iter().map(|scene| scene.scene.as_str()).collect()).collect();
         assert_eq!(names, [vec!["Detection/a"], vec!["Detection/b", "Detection/c"]]);

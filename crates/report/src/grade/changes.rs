@@ -1,13 +1,13 @@
 //! Describes how a submission changed since an earlier grading.
-use super::{format_optional_points, format_points, phrases::list_some};
-use crate::{number::format_count, style::Look};
+use super::{format_optional_points, format_points, phrases::list_first};
+use crate::{number::format_count, style::TextStyle};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
 /// The maximum number of scenes that one line names.
 const MAX_NAMED: usize = 5;
 
 /// Returns lines about the changes of points, and about the scenes with each kind of change. Each line has its style.
-pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
+pub(crate) fn change_lines(grade: &Grade) -> Vec<(TextStyle, String)> {
     let Some(changes) = grade.changes() else { return Vec::new() };
     let name = |scene: &&SceneGrade| scene.scene.clone();
     let now = |scene: &&SceneGrade| format!("{} ({})", scene.scene, scene.verdict.code());
@@ -15,29 +15,29 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
         format!("{} ({}, was {})", scene.scene, scene.verdict.code(), then.code())
     };
     let Changes { newly_right: right, newly_wrong: broke, other_changes: others, .. } = &changes;
-    let kinds: [(Look, &str, Vec<String>); 3] = [
-        (Look::Good, "became right", right.iter().map(name).collect()),
-        (Look::Bad, "broke", broke.iter().map(now).collect()),
+    let kinds: [(TextStyle, &str, Vec<String>); 3] = [
+        (TextStyle::Good, "became right", right.iter().map(name).collect()),
+        (TextStyle::Bad, "broke", broke.iter().map(now).collect()),
         (
-            Look::Notice,
+            TextStyle::Notice,
             if others.len() == 1 { "fails otherwise" } else { "fail otherwise" },
             others.iter().map(both).collect(),
         ),
     ];
     let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
-    let mut lines: Vec<(Look, String)> = named
+    let mut lines: Vec<(TextStyle, String)> = named
         .map(|(look, verb, names)| {
-            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, MAX_NAMED)))
+            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_first(&names, MAX_NAMED)))
         })
         .collect();
     if lines.is_empty() {
-        lines.push((Look::Faint, "no scene changed".to_owned()));
+        lines.push((TextStyle::Faint, "no scene changed".to_owned()));
     }
     let then = match format_points(changes.max_points) == format_points(grade.max_points) {
         true => format_optional_points(changes.points),
         false => format!("{} of {}", format_optional_points(changes.points), format_points(changes.max_points)),
     };
-    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", format_optional_points(grade.points))));
+    lines.insert(0, (TextStyle::Strong, format!("{then} points before, {} now", format_optional_points(grade.points))));
     lines
 }
 
@@ -55,7 +55,7 @@ mod tests {
         now.groups[0].points = Some(5.0);
         now.groups[0].scenes[0].result.verdict = Verdict::WrongAnswer;
         (now.points, now.earlier_grade) = (Some(15.0), Some((&then).into()));
-        let words = |grade: &Grade| lines(grade).into_iter().map(|(_, line)| line).collect::<Vec<_>>();
+        let words = |grade: &Grade| change_lines(grade).into_iter().map(|(_, line)| line).collect::<Vec<_>>();
         let expected =
             ["10 points before, 15 now", "1 scene became right: Impulses/a", "1 scene broke: Detection/a (WA)"];
         assert_eq!(words(&now), expected);

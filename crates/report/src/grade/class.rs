@@ -1,9 +1,9 @@
 //! The statistics of a class: points, the hardest scenes, and the most frequent mistakes.
-use super::{describe_likely, find_likely_mistakes, format_points, phrases::list_some, shorten_name};
-use crate::foreign::one_line;
+use super::{describe_likely, find_likely_mistakes, format_points, phrases::list_first, shorten_name};
+use crate::untrusted_text::to_one_line;
 use crate::{
     number::format_count,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Table},
 };
 use fosssim_findings::{Grade, Verdict};
@@ -21,17 +21,17 @@ pub(crate) struct SceneShare {
 /// program.
 #[must_use]
 pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
-    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), render_head(grades));
+    let mut text = format!("{}: {}\n", style.paint(TextStyle::Strong, "Class"), render_head(grades));
     let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes with the fewest right answers"));
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
         for (scene, share) in scenes.iter().take(most) {
             let percent = 100.0 * share.accepted as f64 / share.run.max(1) as f64;
             table.row([
                 format!("{} of {}", share.accepted, share.run).into(),
                 format!("{percent:.0} %").into(),
-                one_line(scene).into(),
+                to_one_line(scene).into(),
             ]);
         }
         text += &table.render(style);
@@ -44,27 +44,27 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
     }
     let mistakes = find_frequent(grades);
     if !mistakes.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
         for SharedMistake { mistake, members } in mistakes.iter().take(most) {
             let what = describe_likely(&grades[members[0]], mistake);
-            table.row([format_count(members.len() as u64, "submission").into(), one_line(&what).into()]);
+            table.row([format_count(members.len() as u64, "submission").into(), to_one_line(&what).into()]);
         }
         text += &table.render(style);
     }
-    let same = same_programs(grades);
+    let same = group_same_programs(grades);
     if !same.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "The same program, byte for byte"));
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "The same program, byte for byte"));
         for members in &same {
             let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
-            let _ = writeln!(text, "  {}", list_some(&names, most));
+            let _ = writeln!(text, "  {}", list_first(&names, most));
         }
     }
     text
 }
 
 /// Returns groups of submissions with the same program. The numbers are indices into `grades`.
-pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
+pub(crate) fn group_same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| !grade.same_program.is_empty()) {
         found.entry(grade.program.as_deref().unwrap_or_default()).or_default().push(number);
@@ -89,12 +89,12 @@ pub(crate) struct ClassFigures {
     pub(crate) max_points: f64,
     /// The number of submissions with more points than in the earlier grading, and the number with fewer; `None` if
     /// there is no earlier grading.
-    pub(crate) since: Option<(usize, usize)>,
+    pub(crate) submissions_since: Option<(usize, usize)>,
 }
 
 impl ClassFigures {
     pub(crate) fn from_grades(grades: &[Grade]) -> Self {
-        let ran = || grades.iter().filter(|grade| !never_ran(grade));
+        let ran = || grades.iter().filter(|grade| !has_never_run(grade));
         let mut reached: Vec<f64> = ran().filter_map(|grade| grade.points).collect();
         reached.sort_by(f64::total_cmp);
         #[expect(clippy::cast_precision_loss, reason = "classes are small")]
@@ -115,7 +115,7 @@ impl ClassFigures {
             without_points: ran().count() - reached.len(),
             points,
             max_points: grades.first().map_or(0.0, |grade| grade.max_points),
-            since: is_compared.then(|| (changed(Ordering::Greater), changed(Ordering::Less))),
+            submissions_since: is_compared.then(|| (changed(Ordering::Greater), changed(Ordering::Less))),
         }
     }
 }
@@ -136,14 +136,14 @@ fn render_head(grades: &[Grade]) -> String {
     if figures.without_points > 0 {
         let _ = write!(text, "; {} without points", figures.without_points);
     }
-    if let Some((more, fewer)) = figures.since {
+    if let Some((more, fewer)) = figures.submissions_since {
         let _ = write!(text, "; {more} with more points than before, {fewer} with fewer");
     }
     text
 }
 
 /// Returns whether the submission was run on no scene, because it has no program or could not be built.
-pub(crate) fn never_ran(grade: &Grade) -> bool {
+pub(crate) fn has_never_run(grade: &Grade) -> bool {
     grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
@@ -152,7 +152,7 @@ pub(crate) fn never_ran(grade: &Grade) -> bool {
 pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
-    for scene in grades.iter().filter(|grade| !never_ran(grade)).flat_map(Grade::scenes) {
+    for scene in grades.iter().filter(|grade| !has_never_run(grade)).flat_map(Grade::scenes) {
         let share = shares.entry(&scene.scene).or_insert_with(|| {
             order.push(scene.scene.as_str());
             SceneShare::default()
@@ -202,7 +202,8 @@ mod tests {
 
     #[test]
     fn a_class_is_summed_up() {
-        let grades = [samples::accepted_grade(), samples::failing_grade(), samples::fault(), samples::stopped_grade()];
+        let grades =
+            [samples::accepted_grade(), samples::failing_grade(), samples::failed_grade(), samples::stopped_grade()];
         insta::assert_snapshot!(render_class(&grades, 3, Style::Plain));
         assert!(render_class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
     }
@@ -230,10 +231,10 @@ mod tests {
 
     #[test]
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
-        let grades = [samples::fault(), samples::stopped_grade()];
+        let grades = [samples::failed_grade(), samples::stopped_grade()];
         assert_eq!(find_hardest(&grades), (Vec::new(), 1));
         assert_eq!(
-            find_hardest(&[samples::failing_grade(), samples::unfit()]),
+            find_hardest(&[samples::failing_grade(), samples::unusable_grade()]),
             find_hardest(&[samples::failing_grade()])
         );
     }

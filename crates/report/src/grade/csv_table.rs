@@ -1,6 +1,6 @@
 //! CSV tables for spreadsheets. A cell that a spreadsheet would read as a formula gets an apostrophe at its beginning.
-use super::{describe_likely, find_likely_mistakes, format_points, no_points, phrases::NOT_GRADED};
-use crate::foreign::one_line;
+use super::{describe_likely, describe_missing_points, find_likely_mistakes, format_points, phrases::NOT_GRADED};
+use crate::untrusted_text::to_one_line;
 use crate::{view::to_key, words};
 use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
 use fosssim_mistakes::together::mistake_points;
@@ -36,7 +36,7 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
     });
     let head: Vec<String> = head.split(',').map(str::to_owned).collect();
     let rest = empty_rows(passed_over, &head, "summary");
-    write(head, rows.chain(rest))
+    write_table(head, rows.chain(rest))
 }
 
 /// Renders a table with one row per submission and one column per group. `rules_differ` counts the scenes that the rule
@@ -67,7 +67,9 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
             format!("{:.3}", grade.wall.as_secs_f64()),
             grade.count_differing().to_string(),
             escape_formula(&mistakes.join(" ")),
-            escape_formula(&no_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default()),
+            escape_formula(
+                &describe_missing_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default(),
+            ),
             escape_formula(&grade.same_program.join(", ")),
             find_likely_mistakes(grade)
                 .first()
@@ -82,7 +84,7 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
         row
     });
     let rest = empty_rows(passed_over, &head, "reason");
-    write(head, rows.chain(rest))
+    write_table(head, rows.chain(rest))
 }
 
 /// Returns rows for skipped entries. The column `reasons` has the reason why each was skipped.
@@ -99,7 +101,7 @@ fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> V
     passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
 }
 
-fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
+fn write_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in std::iter::once(head).chain(rows) {
         // Writing to memory fails only if rows differ in length, which the rows above do not.
@@ -112,7 +114,7 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
 /// again, so that different texts have different cells.
 fn escape_formula(text: &str) -> String {
     const FORMULA_STARTS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
-    let text = one_line(text);
+    let text = to_one_line(text);
     let begins = |c: char| c == '\'' || c.is_whitespace();
     if text.trim_start_matches(begins).starts_with(FORMULA_STARTS) { format!("'{text}") } else { text }
 }

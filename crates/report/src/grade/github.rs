@@ -1,12 +1,12 @@
 //! Output for GitHub Actions: one annotation for each cause of scenes that are not accepted, and a summary in Markdown.
 use super::{
     super::explain,
-    by_cause, change_lines, describe_difference, format_optional_points, format_points, head_lines, is_listed,
-    no_points,
-    phrases::{NOT_GRADED, list_some},
+    change_lines, describe_difference, describe_missing_points, format_optional_points, format_points, group_by_cause,
+    head_lines, is_listed,
+    phrases::{NOT_GRADED, list_first},
 };
 use crate::annotation::{join_annotation, render_annotation};
-use crate::foreign::{clean_output, one_line};
+use crate::untrusted_text::{clean_output, to_one_line};
 use crate::{number::format_count, words};
 use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use std::fmt::Write;
@@ -50,14 +50,14 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
 }
 
 /// Renders one warning for each skipped entry.
-pub(crate) fn passed_over(entries: &[SkippedEntry]) -> String {
+pub(crate) fn warn_of_skipped(entries: &[SkippedEntry]) -> String {
     let warning =
         |entry: &SkippedEntry| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.reason);
     entries.iter().map(warning).collect()
 }
 
 /// Renders a Markdown list of the skipped entries.
-pub(crate) fn list_of_passed_over(entries: &[SkippedEntry]) -> String {
+pub(crate) fn list_skipped(entries: &[SkippedEntry]) -> String {
     if entries.is_empty() {
         return String::new();
     }
@@ -91,7 +91,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
                 let _ = writeln!(text, "{}\n", escape_cell(&words::build(&build.end)));
             }
             for line in clean_output(&build.output).lines().take(40) {
-                let _ = writeln!(text, "    {}", one_line(line));
+                let _ = writeln!(text, "    {}", to_one_line(line));
             }
             text.push('\n');
         }
@@ -100,7 +100,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
         }
         let _ = writeln!(text, "| scenes | verdict | points | reason |\n|---|---|---:|---|");
         let sum = |scenes: &[&SceneGrade]| format_optional_points(scenes.iter().map(|scene| scene.points).sum());
-        for alike in by_cause(grade) {
+        for alike in group_by_cause(grade) {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
             let scene = alike[0];
             let words: Vec<String> = std::iter::once(words::summarize(scene))
@@ -108,7 +108,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
                 .chain(describe_difference(scene))
                 .map(|words| escape_cell(&words))
                 .collect();
-            let (names, words) = (escape_cell(&list_some(&names, MAX_NAMED)), words.join("; "));
+            let (names, words) = (escape_cell(&list_first(&names, MAX_NAMED)), words.join("; "));
             let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, sum(&alike));
         }
         for verdict in [Verdict::Accepted, Verdict::NotRun] {
@@ -127,13 +127,13 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
 fn format_score(grade: &Grade) -> String {
     let reached =
         grade.points.map(|reached| format!("{} of {}", format_points(reached), format_points(grade.max_points)));
-    reached.or_else(|| no_points(grade)).unwrap_or_default()
+    reached.or_else(|| describe_missing_points(grade)).unwrap_or_default()
 }
 
 /// Escapes the characters in a text that have a meaning in Markdown or HTML.
 fn escape_cell(text: &str) -> String {
     let mut cell = String::new();
-    for c in one_line(text).chars() {
+    for c in to_one_line(text).chars() {
         match c {
             '<' => cell.push_str("&lt;"),
             '>' => cell.push_str("&gt;"),

@@ -1,7 +1,7 @@
 //! The file results.json for Gradescope. If the grader failed, the file has no score: the harness then exits with an
 //! error instead of giving zero points.
-use super::{super::explain, describe_difference, describe_speed, format_points, head_lines, see_above};
-use crate::foreign::{clean_output, strip_control_characters};
+use super::{super::explain, describe_difference, describe_repeated_reason, describe_speed, format_points, head_lines};
+use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{number::format_count, style::Style, view::to_document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
@@ -61,7 +61,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 name: format!("{} ({})", strip_control_characters(&scene.scene), strip_control_characters(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.submission_fault() {
-                    Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
+                    Some(_) => format!("{}: {}", scene.verdict, describe_repeated_reason(scene)),
                     // Only staff see this test, so it may show everything.
                     None if tells_all || group.visibility == Visibility::Hidden => describe_scene(scene),
                     None => {
@@ -166,7 +166,9 @@ fn describe_scene(scene: &SceneGrade) -> String {
     lines.extend(describe_difference(scene));
     lines.extend(words::list_details(scene).iter().map(|detail| strip_control_characters(detail)));
     lines.extend(
-        explain::lines(&scene.corrected_explanations, Style::Plain).iter().map(|line| strip_control_characters(line)),
+        explain::explanation_texts(&scene.corrected_explanations, Style::Plain)
+            .iter()
+            .map(|line| strip_control_characters(line)),
     );
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));

@@ -1,6 +1,6 @@
 //! JSON in this program's own form (`schemas/grade.schema.json`). It contains everything in a grade.
 use super::{super::explain::ExplanationView, describe_likely, describe_speed, phrases::NOT_GRADED};
-use crate::foreign::{clean_output, strip_control_characters};
+use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{
     check::CauseView,
     smallest::SmallestView,
@@ -275,20 +275,20 @@ view! {
 /// Renders all grades as one document.
 pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let (grades, passed_over) =
-        (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(with_plain_words).collect());
+        (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(strip_entry).collect());
     to_document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }
 
-fn with_plain_words(entry: &SkippedEntry) -> SkippedEntry {
+fn strip_entry(entry: &SkippedEntry) -> SkippedEntry {
     SkippedEntry { name: strip_control_characters(&entry.name), reason: strip_control_characters(&entry.reason) }
 }
 
 /// Renders one line of JSON per grade, and one per skipped entry.
 #[must_use]
-pub fn lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+pub fn render_lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let passed_over = passed_over.iter().map(|entry| {
-        let SkippedEntry { name, reason: why } = with_plain_words(entry);
+        let SkippedEntry { name, reason: why } = strip_entry(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });

@@ -1,7 +1,7 @@
 //! JUnit XML, with one suite per group and one case per scene. Wrong results are failures, and faults of the grader are
 //! errors.
 use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
-use crate::foreign::{clean_output, strip_control_characters};
+use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -80,7 +80,7 @@ fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_type(verdict.name());
             status.set_message(strip_control_characters(&words::summarize(scene)));
             let mut description = words::list_details(scene);
-            description.extend(explain::lines(&scene.corrected_explanations, Style::Plain));
+            description.extend(explain::explanation_texts(&scene.corrected_explanations, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), clean_output(&build.output)]);
             }

@@ -1,6 +1,6 @@
 //! Renders grades in every format that courses use. All functions are pure, from [`Grade`] to text.
 //!
-//! Names and program output are untrusted text. Each format removes control characters with `plain` or `one_line` of
+//! Names and program output are untrusted text. Each format removes control characters with `plain` or `to_one_line` of
 //! `foreign`, and escapes the characters that have a meaning in its syntax. A test sends hostile text through every
 //! format.
 
@@ -12,9 +12,9 @@ pub(crate) mod github;
 pub(crate) mod gradescope;
 pub(crate) mod json;
 pub(crate) mod junit;
-mod passed_over;
 mod phrases;
 pub(crate) mod prairielearn;
+mod skipped_entries;
 mod speed;
 mod text;
 
@@ -26,23 +26,23 @@ pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
-pub use causes::{AlikeScenes, by_cause};
+pub use causes::{AlikeScenes, group_by_cause};
 pub(crate) use causes::{clearest_scene, is_listed, rank};
-pub(crate) use changes::lines as change_lines;
+pub(crate) use changes::change_lines;
 pub use class::render_class;
-pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, never_ran, same_programs};
+pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, group_same_programs, has_never_run};
 pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
-pub use json::lines as json_lines;
-pub use passed_over::{add_warnings, not_graded};
-use phrases::see_above;
+pub use json::render_lines as json_lines;
+use phrases::describe_repeated_reason;
 pub(crate) use phrases::{count_wrong, describe_likely, describe_worth, detail_likely, head_likely};
 pub use phrases::{
-    describe_difference, find_likely_mistakes, format_optional_points, format_points, format_score, head_lines,
-    no_points,
+    describe_difference, describe_missing_points, find_likely_mistakes, format_optional_points, format_points,
+    format_score, head_lines,
 };
+pub use skipped_entries::{add_warnings, list_not_graded};
 pub(crate) use speed::describe_speed;
-pub use text::{Advice, Text, TextDetail, extra, render_table as text_table, shorten_name};
+pub use text::{Advice, Text, TextDetail, describe_extra_points, render_table as text_table, shorten_name};
 
 #[cfg(test)]
 pub(crate) mod samples;

@@ -1,6 +1,6 @@
 //! Sentences about a grade that appear in several formats.
 use super::clearest_scene;
-use crate::{foreign::one_line, number::format_count, words};
+use crate::{number::format_count, untrusted_text::to_one_line, words};
 use fosssim_findings::{FindingKind, Grade, SceneGrade, Verdict, disclosure::DisclosedFinding};
 pub use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
@@ -47,7 +47,7 @@ pub(crate) fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
              response.",
             first.kind()
         ),
-        None => words::explanation::what_or(mistake),
+        None => words::explanation::describe_with_alternatives(mistake),
     }
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn count_wrong(grade: &Grade) -> String {
 }
 
 /// Returns the text for a scene whose verdict has a reason that the report has already given for the whole submission.
-pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
+pub(super) const fn describe_repeated_reason(scene: &SceneGrade) -> &'static str {
     match scene.result.verdict {
         Verdict::Unwritten => "see above",
         _ => "not run, see above",
@@ -109,8 +109,8 @@ pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
 }
 
 /// Joins the first names into a list, such as `a, b, c and 2 more`.
-pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
-    let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
+pub(super) fn list_first(names: &[impl AsRef<str>], most: usize) -> String {
+    let shown: Vec<_> = names.iter().take(most).map(|name| to_one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more
 }
@@ -137,7 +137,7 @@ pub fn format_optional_points(value: Option<f64>) -> String {
 
 /// Returns the reason why a grade has no points; `None` if it has points.
 #[must_use]
-pub fn no_points(grade: &Grade) -> Option<String> {
+pub fn describe_missing_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {
         None
     } else if grade.is_our_fault() {

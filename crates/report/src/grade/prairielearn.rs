@@ -1,7 +1,7 @@
 //! PrairieLearn's results.json: a score from 0 to 1. If the grader failed, or the upload has no program that can be
 //! run, `gradable` is false, and the upload does not count as an attempt.
-use super::{super::explain, describe_difference, describe_speed, format_score, head_lines, see_above};
-use crate::foreign::{clean_output, one_line, strip_control_characters};
+use super::{super::explain, describe_difference, describe_repeated_reason, describe_speed, format_score, head_lines};
+use crate::untrusted_text::{clean_output, strip_control_characters, to_one_line};
 use crate::{style::Style, view::to_document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::immediate_grade;
@@ -53,26 +53,26 @@ pub(crate) fn render(grade: &Grade) -> String {
     let tests = scenes
         .into_iter()
         .map(|(group, scene)| Test {
-            name: one_line(&scene.scene),
-            group: one_line(&group.name),
+            name: to_one_line(&scene.scene),
+            group: to_one_line(&group.name),
             description: scene.verdict.name().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
             message: if grade.submission_fault().is_some() {
-                see_above(scene).to_owned()
+                describe_repeated_reason(scene).to_owned()
             } else {
-                cut(&words::summarize(scene))
+                truncate(&words::summarize(scene))
             },
-            output: cut(&describe_scene(scene)),
+            output: truncate(&describe_scene(scene)),
         })
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
             Test {
-                name: format!("speed ({})", one_line(&group.name)),
-                group: one_line(&group.name),
+                name: format!("speed ({})", to_one_line(&group.name)),
+                group: to_one_line(&group.name),
                 description: "processor time compared with the reference's".to_owned(),
                 points: speed.points,
                 max_points: speed.marking.points,
-                message: cut(&describe_speed(speed)),
+                message: truncate(&describe_speed(speed)),
                 output: String::new(),
             }
         }))
@@ -108,14 +108,14 @@ pub(crate) fn render(grade: &Grade) -> String {
             .map(|warning| format!("warning: {warning}"))
             .chain(head)
             .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), clean_output(&build.output))))
-            .map(|text| cut(&text))
+            .map(|text| truncate(&text))
             .collect::<Vec<_>>()
             .join("\n"),
         groups: shown
             .groups
             .iter()
             .map(|group| Group {
-                name: one_line(&group.name),
+                name: to_one_line(&group.name),
                 verdict: group.verdict.name().to_owned(),
                 points: group.points,
                 max_points: group.max_points,
@@ -130,11 +130,11 @@ pub(crate) fn render(grade: &Grade) -> String {
 fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::list_details(scene));
-    lines.extend(explain::lines(&scene.corrected_explanations, Style::Plain));
+    lines.extend(explain::explanation_texts(&scene.corrected_explanations, Style::Plain));
     lines.join("\n")
 }
 
-fn cut(text: &str) -> String {
+fn truncate(text: &str) -> String {
     let text = strip_control_characters(text);
     match text.char_indices().nth(MAX_TEXT_LENGTH) {
         Some((end, _)) => format!("{} [cut short]", &text[..end]),

@@ -14,7 +14,7 @@ use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
 /// Returns a reason that consists of the given text, to test how reports show untrusted text.
-pub(crate) fn saying(words: &str) -> Reason {
+pub(crate) fn reason_with_text(words: &str) -> Reason {
     Reason::Failed(Failure::Machine(words.to_owned()))
 }
 
@@ -27,7 +27,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
             memory: Some(7 << 20),
             ..Measurements::default()
         },
-        ..SceneResult::without_run(name, 100, verdict, saying(summary))
+        ..SceneResult::without_run(name, 100, verdict, reason_with_text(summary))
     }
 }
 
@@ -129,7 +129,7 @@ pub(crate) fn failing_grade() -> Grade {
 }
 
 /// Returns the grade of an upload that contains no program.
-pub(crate) fn unfit() -> Grade {
+pub(crate) fn unusable_grade() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
     let found = FolderContents::Others { names, more: 0, elsewhere: None };
     let why = Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found });
@@ -150,13 +150,16 @@ pub(crate) fn unfit() -> Grade {
 pub(crate) fn stopped_grade() -> Grade {
     let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
     running.measured.wall = Duration::from_secs(14);
-    let scenes =
-        vec![scene("Detection/a", Verdict::Accepted, "all 100 steps are right"), running, missing("Detection/c")];
+    let scenes = vec![
+        scene("Detection/a", Verdict::Accepted, "all 100 steps are right"),
+        running,
+        missing_result("Detection/c"),
+    ];
     grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
 }
 
 /// Returns the grade of a program that was stopped at its time limit, after which the other scenes were skipped.
-pub(crate) fn endless() -> Grade {
+pub(crate) fn endless_grade() -> Grade {
     let mut stopped = scene("Detection/a", Verdict::TimeLimit, "it ran for 5 s");
     stopped.ended = Some(RunEnd::CpuLimit);
     let left_out = |name| {
@@ -167,12 +170,12 @@ pub(crate) fn endless() -> Grade {
     grade("eve", vec![group("Detection", Visibility::Visible, scenes)])
 }
 
-fn missing(name: &str) -> SceneResult {
+fn missing_result(name: &str) -> SceneResult {
     SceneResult::without_run(name, 100, Verdict::NotRun, Reason::Stopped)
 }
 
 /// Returns the grade of a submission on which the grader failed.
-pub(crate) fn fault() -> Grade {
+pub(crate) fn failed_grade() -> Grade {
     grade(
         "bob",
         vec![group(
@@ -184,7 +187,7 @@ pub(crate) fn fault() -> Grade {
 }
 
 /// Returns the grade of the course's template, in which nothing is written yet.
-pub(crate) fn unwritten() -> Grade {
+pub(crate) fn unwritten_grade() -> Grade {
     let empty = |key: &str| Explanation {
         key: key.to_owned(),
         topic: ExplanationTopic::Mistake,

@@ -109,7 +109,7 @@ fn describe_signs(study: &Study) -> String {
 
 /// Returns whether a set of times neither begins nor ends within the step.
 fn is_flat(set: &[Interval]) -> bool {
-    !set_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
+    !interval_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
 /// Returns the curves of the trace's polynomials, drawn like the expected ones.
@@ -130,11 +130,11 @@ fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>
 
 /// Returns the curve of a polynomial that is positive at the times in `positive`.
 fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
-    PlottedPolynomial { name, coefficients, zeros: set_ends(positive), positive }
+    PlottedPolynomial { name, coefficients, zeros: interval_ends(positive), positive }
 }
 
 /// Returns the zeros of a polynomial within the step. They are the ends of the intervals in which it is positive.
-fn set_ends(set: &[Interval]) -> Vec<f64> {
+fn interval_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|one| [one.lo, one.hi]).collect()
 }
 

@@ -1,6 +1,6 @@
 //! The card of a scene: the picture and the text about a wrong trace. Cards are stored, and pages are assembled from
 //! them later.
-use super::{Case, data, packed::Precision};
+use super::{Case, data, packed_motions::Precision};
 use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
@@ -37,10 +37,10 @@ impl Card {
                 .map(|evidence| data::render_blocks(case, evidence, KEY_PLACEHOLDER, precision))
                 .unwrap_or_default()
         };
-        let data = blocks(Precision::AsRoomAllows);
+        let data = blocks(Precision::Budgeted);
         let rounded = if data.len() > MIN_ROUNDED_BYTES { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
-        Some(Self { html: case.trace_part(KEY_PLACEHOLDER, depth, CAUSE_MARK), data, rounded })
+        Some(Self { html: case.render_trace_part(KEY_PLACEHOLDER, depth, CAUSE_MARK), data, rounded })
     }
 
     /// Returns a card that contains only text.

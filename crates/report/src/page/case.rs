@@ -2,22 +2,22 @@
 use super::{
     Case, call, data,
     markup::{self, mark_difference, render_formula, text},
-    packed::Precision,
+    packed_motions::Precision,
     render_document, render_template, script, strip,
 };
 use crate::{
     check::{
         Check, advice,
         books::verdicts,
-        describe_problem,
+        consequences, describe_problem,
         divergence::{self, Row, Value},
-        first::{find_first, is_other_scene},
-        follows, list_notes, render_headline,
+        first_finding::{find_first, is_other_scene},
+        list_notes, render_headline,
     },
     describe::pair_key,
     explain::ExplanationParts,
     number::count,
-    style::{Look, Style},
+    style::{Style, TextStyle},
 };
 use askama::Template;
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
@@ -55,8 +55,8 @@ impl Case<'_> {
         };
         let explanations = if is_other_scene(check) { &[][..] } else { check.explanations };
         let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some());
-        let data = self.evidence.map(|evidence| data::render_blocks(self, evidence, key, Precision::AsRoomAllows));
-        let content = self.trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
+        let data = self.evidence.map(|evidence| data::render_blocks(self, evidence, key, Precision::Budgeted));
+        let content = self.render_trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
         render_template(&CaseContent { check, key, look, content })
     }
 
@@ -67,7 +67,7 @@ impl Case<'_> {
 
     /// Renders the part about the trace, below a heading of level `depth`. The motion is next to its cause and the
     /// first wrong values. Everything that needs more space is below them.
-    pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
+    pub(super) fn render_trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         render_template(&TraceContent { case: self, check: &self.check, key, depth, mistakes })
     }
 
@@ -92,8 +92,8 @@ impl Case<'_> {
 
     /// Returns a sentence about whether a program with the likely mistake writes the same trace; `None` if there is no
     /// such run, or if the hints hide it.
-    fn proof(&self) -> Option<&'static str> {
-        let what = self.what_if.filter(|_| self.hints == Hints::Full)?;
+    fn describe_proof(&self) -> Option<&'static str> {
+        let what = self.mistake_run.filter(|_| self.hints == Hints::Full)?;
         Some(if what.equal {
             "Proof: the reference with exactly the likely mistake writes the same trace, bit for bit."
         } else {
@@ -135,17 +135,17 @@ struct Mistakes {
 impl TraceContent<'_> {
     /// Returns the detection calls and their steps, with those of the first wrong step first. The first list has calls
     /// whose differences only follow from earlier wrong passes. The second list has calls that are wrong themselves.
-    fn calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
+    fn group_calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
         let first = self.case.first().map(|first| first.step);
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
         let mut calls: Vec<_> = calls.collect();
         calls.sort_by_key(|(step, _)| Some(*step) != first);
-        let follows = follows::count(self.check.outcome) > 0;
+        let follows = consequences::count_consequences(self.check.outcome) > 0;
         calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0)
     }
 
     /// Renders the first calls of a list. If `open`, the first one is unfolded.
-    fn render_some(&self, calls: &[StepCall<'_>], open: bool) -> String {
+    fn render_first_calls(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call =
             |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
         let mut out: String = calls.iter().take(MAX_CALLS).enumerate().map(call).collect();
@@ -157,8 +157,8 @@ impl TraceContent<'_> {
 
     /// Returns the first finding of each kind, without findings that only follow from wrong positions.
     fn examples<'b>(&self, account: &'b BookFindings) -> impl Iterator<Item = &'b Finding> {
-        let follows = follows::count(self.check.outcome) > 0;
-        account.examples.iter().filter(move |example| !(follows && follows::is_of_formula(example.kind())))
+        let follows = consequences::count_consequences(self.check.outcome) > 0;
+        account.examples.iter().filter(move |example| !(follows && consequences::is_formula_fault(example.kind())))
     }
 
     /// Renders plots of the error at the end of each step, and of the detection passes.
@@ -200,7 +200,7 @@ impl TraceContent<'_> {
 }
 
 /// Names the step of a finding.
-fn step_of(step: u32, steps: u32) -> String {
+fn describe_step(step: u32, steps: u32) -> String {
     match step {
         0 => "the first record".to_owned(),
         step => format!("step {step} of {steps}"),
@@ -258,7 +258,7 @@ fn split_lead(what: &str) -> (String, Option<&str>) {
 }
 
 /// Returns the pair of a finding in the notation of the viewer.
-fn pair_of(finding: &Finding) -> String {
+fn pair_key_of_finding(finding: &Finding) -> String {
     Focus::from(finding).pair.map(pair_key).unwrap_or_default()
 }
 

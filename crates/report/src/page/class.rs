@@ -1,16 +1,16 @@
 //! The page of a class: the points of all submissions, the hardest scenes, and the submissions with the same mistake.
 use super::{
-    graded::scene_key,
+    grade_page::scene_key,
     heat, histogram,
     markup::{count_scenes, note, render_data},
     render_document, render_template,
-    smallest::{format_pre, parts},
+    smallest::{format_pre, list_parts},
 };
-use crate::foreign::one_line;
+use crate::untrusted_text::to_one_line;
 use crate::{
     grade::{
         ClassFigures, SharedMistake, clearest_scene, describe_likely, find_frequent, find_hardest,
-        find_likely_mistakes, format_optional_points, format_points, never_ran, same_programs,
+        find_likely_mistakes, format_optional_points, format_points, group_same_programs, has_never_run,
     },
     smallest::title,
     words,
@@ -92,7 +92,7 @@ impl ClassContent<'_> {
 
     /// Returns the names of submissions as text, to be copied into a letter.
     fn names(&self, members: &[usize]) -> String {
-        let names = members.iter().map(|&number| one_line(&self.class.grades[number].submission));
+        let names = members.iter().map(|&number| to_one_line(&self.class.grades[number].submission));
         names.collect::<Vec<_>>().join(", ")
     }
 
@@ -125,9 +125,9 @@ impl ClassContent<'_> {
             let scene = clearest_scene(first, mistake);
             let smallest = members.iter().flat_map(|&number| &grades[number].smallest);
             Cluster {
-                heading: one_line(&describe_likely(first, mistake)),
+                heading: to_one_line(&describe_likely(first, mistake)),
                 members: members.clone(),
-                scene: scene.map(|scene| (one_line(&scene.scene), self.address(first, &scene.scene))),
+                scene: scene.map(|scene| (to_one_line(&scene.scene), self.address(first, &scene.scene))),
                 note: first.course_note(mistake),
                 smallest: smallest
                     .filter(|small| is_named_in(mistake, &small.explanations))
@@ -136,14 +136,14 @@ impl ClassContent<'_> {
                 mistake: Some(number),
             }
         });
-        let same = by_signature(grades).into_iter().map(|members| {
+        let same = group_by_signature(grades).into_iter().map(|members| {
             let wrong: Vec<&SceneGrade> = grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
             let first = format!("{}: {}", wrong[0].scene, words::summarize(wrong[0]));
             let heading = match wrong.len() {
                 1 => "No mistake is named, but the same scene fails for the same reason".to_owned(),
                 count => format!("No mistake is named, but the same {count} scenes fail for the same reason"),
             };
-            Cluster { heading, members, first: Some(shorten(&one_line(&first))), ..Cluster::default() }
+            Cluster { heading, members, first: Some(shorten(&to_one_line(&first))), ..Cluster::default() }
         });
         named.chain(same).collect()
     }
@@ -154,11 +154,11 @@ impl ClassContent<'_> {
             let heading = shorten(&self.names(&members));
             Cluster { heading, members, ..Cluster::default() }
         };
-        same_programs(self.class.grades).into_iter().map(cluster).collect()
+        group_same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
     /// Returns the address of the first submission's page on which the scene is described, because it is wrong.
-    fn scenes_naming(&self, name: &str) -> Option<String> {
+    fn find_scene_with_mistake(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
     }
@@ -182,12 +182,12 @@ fn sort_key(points: Option<f64>) -> String {
 }
 
 /// Returns the points of the earlier grading, if there is one.
-fn points_before(grade: &Grade) -> Option<f64> {
+fn earlier_points(grade: &Grade) -> Option<f64> {
     grade.changes()?.points
 }
 
 /// Returns the number of scenes that are accepted.
-fn accepted_of(grade: &Grade) -> usize {
+fn count_accepted(grade: &Grade) -> usize {
     grade.count_verdict(Verdict::Accepted)
 }
 
@@ -233,19 +233,19 @@ fn is_failed(scene: &SceneGrade) -> bool {
 fn submission_state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
-        _ if never_ran(grade) => "none",
+        _ if has_never_run(grade) => "none",
         _ => "bad",
     }
 }
 
 /// Returns one letter for each of a submission's scenes.
-fn row_of_scenes(grade: &Grade) -> String {
-    let letters = grade.groups.iter().map(|group| group.scenes.iter().map(letter_of).collect::<String>());
+fn scene_letters(grade: &Grade) -> String {
+    let letters = grade.groups.iter().map(|group| group.scenes.iter().map(scene_letter).collect::<String>());
     heat::html(&letters.collect::<Vec<_>>().join("|"))
 }
 
 /// Returns the letter for a scene: accepted, wrong, not run, or without a trace that can be judged.
-fn letter_of(scene: &SceneGrade) -> char {
+fn scene_letter(scene: &SceneGrade) -> char {
     match scene.verdict {
         Verdict::Accepted => 'r',
         Verdict::NotRun | Verdict::Unusable | Verdict::CompileError => 'n',
@@ -266,14 +266,15 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
         (median, "median, of submissions that were run".to_owned()),
         (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
-    let since =
-        figures.since.map(|(more, fewer)| (format!("{more} / {fewer}"), "more / fewer points than before".to_owned()));
+    let since = figures
+        .submissions_since
+        .map(|(more, fewer)| (format!("{more} / {fewer}"), "more / fewer points than before".to_owned()));
     rows.into_iter().chain(since).collect()
 }
 
 /// Returns groups of submissions that fail the same scenes for the same reasons, the largest first. Submissions with a
 /// likely mistake are left out.
-fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
+fn group_by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| find_likely_mistakes(grade).is_empty()) {
         let failed = grade.scenes().filter(|scene| is_failed(scene));
@@ -290,7 +291,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
 
 /// Renders a histogram of the shares of points, for the submissions that were run.
 fn render_bars(grades: &[Grade]) -> String {
-    let ran = grades.iter().filter(|grade| !never_ran(grade));
+    let ran = grades.iter().filter(|grade| !has_never_run(grade));
     histogram::html(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
@@ -319,7 +320,7 @@ mod tests {
                 let scenes = (0..16).map(|number| {
                     let scene = 16 * group + number;
                     let (verdict, why) = match fails(scene) {
-                        Some(words) => (Verdict::WrongAnswer, samples::saying(&words)),
+                        Some(words) => (Verdict::WrongAnswer, samples::reason_with_text(&words)),
                         None => (Verdict::Accepted, Reason::Right),
                     };
                     (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, why), false)

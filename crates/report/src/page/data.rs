@@ -1,10 +1,10 @@
 //! The data for the motion viewer: one JSON block per case, and the motions as packed doubles.
 use super::{
     Case, markup,
-    packed::{PackedMotions, Precision, Rounding},
+    packed_motions::{PackedMotions, Precision, Rounding},
 };
 use crate::{
-    check::{first::find_first, follows},
+    check::{consequences, first_finding::find_first},
     describe::pair_key,
 };
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
@@ -24,7 +24,7 @@ pub(super) fn render_blocks(case: &Case<'_>, evidence: &Evidence, key: &str, pre
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
     // If both motions are the same bit for bit, only one of them is stored.
-    let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
+    let what = case.mistake_run.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
     let PackedMotions { blocks, rounded } = PackedMotions::from_evidence(evidence, &tracks, precision);
@@ -81,31 +81,31 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
         "planes": half_planes.iter()
             .map(|plane| [plane.point.x, plane.point.y, plane.normal.x, plane.normal.y]).collect::<Vec<_>>(),
         "strip": strip,
-        "follows": follows::count(case.check.outcome) > 0,
+        "follows": consequences::count_consequences(case.check.outcome) > 0,
         "closeUps": inspected.iter().map(|up| inspected_step(up, evidence)).collect::<Vec<_>>(),
         "calls": calls.collect::<Vec<_>>(),
-        "whatIf": case.what_if.filter(|_| is_full)
+        "whatIf": case.mistake_run.filter(|_| is_full)
             .map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
     })
 }
 
-fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {
-    let step = (up.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
+fn inspected_step(inspected: &InspectedStep, evidence: &Evidence) -> Value {
+    let step = (inspected.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
     json!({
-        "step": up.step,
-        "mid": up.expected_mid.as_ref().map(state_data),
-        "end": up.expected_end.as_ref().map(state_data),
-        "passes": up.passes.iter().map(pass_data).collect::<Vec<_>>(),
-        "expected": up.expected_contacts.iter().map(contact_data).collect::<Vec<_>>(),
-        "actual": up.actual_contacts.iter().filter_map(encode_logged).take(200).collect::<Vec<_>>(),
-        "zones": up.zones.iter().map(|zones| json!({
+        "step": inspected.step,
+        "mid": inspected.expected_mid.as_ref().map(state_data),
+        "end": inspected.expected_end.as_ref().map(state_data),
+        "passes": inspected.passes.iter().map(pass_data).collect::<Vec<_>>(),
+        "expected": inspected.expected_contacts.iter().map(contact_data).collect::<Vec<_>>(),
+        "actual": inspected.actual_contacts.iter().filter_map(encode_logged).take(200).collect::<Vec<_>>(),
+        "zones": inspected.zones.iter().map(|zones| json!({
             "round": zones.round,
             "zones": zones.zones.iter()
                 .map(|(particles, plane)| json!({"particles": particles, "halfPlane": plane})).collect::<Vec<_>>(),
         })).collect::<Vec<_>>(),
-        "polynomials": [up.expected_polynomials, up.actual_polynomials],
-        "surplus": up.surplus,
-        "expectedPasses": up.expected_passes,
+        "polynomials": [inspected.expected_polynomials, inspected.actual_polynomials],
+        "surplus": inspected.surplus_polynomials,
+        "expectedPasses": inspected.expected_passes,
         "actualPasses": step.and_then(|step| step.actual_passes),
     })
 }
@@ -120,9 +120,9 @@ fn pass_data(up: &InspectedPass) -> Value {
         "q": up.q_end,
         "calls": up.calls,
         "hits": up.hits.iter().map(contact_data).collect::<Vec<_>>(),
-        "differing": pair_keys(&up.differing),
-        "missing": pair_keys(&up.missing),
-        "repeated": pair_keys(&up.repeated),
+        "differing": pair_keys(&up.differing_pairs),
+        "missing": pair_keys(&up.missing_pairs),
+        "repeated": pair_keys(&up.repeated_pairs),
         "logged": up.is_logged,
     })
 }

@@ -1,6 +1,6 @@
 //! Writes untrusted text into HTML, with escapes.
-use crate::foreign::is_unseen;
 use crate::number::{format_count, format_g, format_pair};
+use crate::untrusted_text::is_invisible;
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use std::fmt::Write;
 pub(super) fn show_hidden(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
-        if c.is_control() && !matches!(c, '\n' | '\t') || is_unseen(c) {
+        if c.is_control() && !matches!(c, '\n' | '\t') || is_invisible(c) {
             let _ = write!(out, "\\u{{{:x}}}", u32::from(c));
         } else {
             out.push(c);

@@ -6,17 +6,17 @@
 
 mod call;
 mod card;
+mod card_details;
 mod case;
 mod class;
 mod data;
-mod examined;
-mod explained;
-mod graded;
+mod examined_page;
+mod explained_page;
+mod grade_page;
 mod heat;
 mod histogram;
 mod markup;
-mod packed;
-mod room;
+mod packed_motions;
 mod smallest;
 mod strip;
 #[cfg(test)]
@@ -24,9 +24,9 @@ mod tests;
 
 pub use card::Card;
 pub use class::ClassPage;
-pub use examined::examined_page;
-pub use explained::ExplainedPage;
-pub use graded::{Audience, GradePage};
+pub use examined_page::examined_page;
+pub use explained_page::ExplainedPage;
+pub use grade_page::{Audience, GradePage};
 
 use super::check::Check;
 use askama::Template;
@@ -45,7 +45,7 @@ const STYLE: &str = include_str!("style.css");
 
 /// The reference's run if it makes a named mistake.
 #[derive(Debug, Clone, PartialEq)]
-pub struct WhatIf {
+pub struct MistakeRun {
     /// The mistake's key in the catalogue.
     pub id: String,
     /// The mistake as a sentence.
@@ -66,7 +66,7 @@ pub struct Case<'a> {
     /// The data for the motion viewer. With `None`, the page has no viewer and no plots.
     pub evidence: Option<&'a Evidence>,
     /// The reference's run if it makes the mistake of the first explanation, as a proof.
-    pub what_if: Option<&'a WhatIf>,
+    pub mistake_run: Option<&'a MistakeRun>,
     /// The amount of detail on the page. The file does not contain what the hints hide.
     pub hints: Hints,
     /// Whether the reader of the page has the trace. Commands on the page can then name its file.

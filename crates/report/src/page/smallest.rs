@@ -25,7 +25,7 @@ struct SmallestContent<'a> {
 }
 
 /// Returns the preformatted parts and their names. The scene itself comes first.
-pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
+pub(super) fn list_parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
     let parts = [Some(small.xml.as_str()), small.difference.as_deref(), small.calculation.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
     named.filter_map(|(name, words)| Some((name, words?))).collect()

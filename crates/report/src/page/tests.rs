@@ -34,7 +34,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let check = check_of(scene_name, trace_name, &outcome, &explanations);
-    Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true }.page(trace_name)
+    Case { check, scene, evidence: Some(&evidence), mistake_run: None, hints, has_trace: true }.page(trace_name)
 }
 
 fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
@@ -123,7 +123,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let outcome =
         replay::judge(&scene, &b""[..], &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
     let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
-    let case = Case { check, scene: &scene, evidence: None, what_if: None, hints: Hints::Full, has_trace: true };
+    let case = Case { check, scene: &scene, evidence: None, mistake_run: None, hints: Hints::Full, has_trace: true };
     let html = case.page("mine.bin");
     assert!(html.contains("is not a trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
@@ -139,8 +139,8 @@ fn a_proof_is_told_of_whole_traces_only() {
     let focus = Focus::from_outcome(&outcome);
     let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let named = &diagnose::explain(&scene, &trace)[0];
-    assert!(WhatIf::for_scene(&scene, named, Some(&trace), &evidence).expect("a run").equal);
-    assert_eq!(WhatIf::for_scene(&scene, named, None, &evidence), None);
+    assert!(MistakeRun::for_scene(&scene, named, Some(&trace), &evidence).expect("a run").equal);
+    assert_eq!(MistakeRun::for_scene(&scene, named, None, &evidence), None);
 }
 
 #[test]
@@ -204,7 +204,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let all = diagnose::explain(scene, &trace);
     let explanations = limit_explanations(hints, all.clone());
-    let what_if = WhatIf {
+    let what_if = MistakeRun {
         id: id.to_owned(),
         sentence: student::find(id).expect("a mistake").summary.to_owned(),
         track: evidence.reference.clone(),
@@ -222,7 +222,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         tables: false,
         looks_like: None,
     };
-    let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
+    let case = Case { check, scene, evidence: Some(&evidence), mistake_run: Some(&what_if), hints, has_trace: false };
     let card = Card::for_case(&case, 3).and_then(|card| Card::from_stored(&card.to_stored()));
     let why = Reason::Wrong(WrongTrace::Undisclosed);
     let mut result = SceneResult::without_run("Group/scene", scene.step_count(), Verdict::WrongAnswer, why);
@@ -360,7 +360,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     };
     let unexplained = SceneResult {
         scene: "Group/crash".to_owned(),
-        ..SceneResult::without_run("", 10, Verdict::RuntimeError, crate::grade::samples::saying("it crashed"))
+        ..SceneResult::without_run("", 10, Verdict::RuntimeError, crate::grade::samples::reason_with_text("it crashed"))
     };
     let id = "failsafe-angular-overwritten";
     let (large, small) = ("HolisticTests/crowd-of-twenty-balls.xml", "GeometricTests/pair-becomes-rigid.xml");
@@ -386,8 +386,10 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     // Both the mistake and its group link to that scene, and a terminal names the same scene.
     let text = crate::formats::Format::Text.render(&[grade.clone()]);
     assert!(text.contains(&format!("Scene to look at first\n  WA {small}: ")), "{text}");
-    let place = format!("<a href=\"#scene-{}\">{}</a>", graded::scene_key(small), small.replace('/', "/<wbr>"));
-    assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::scene_key(small))));
+    let place = format!("<a href=\"#scene-{}\">{}</a>", grade_page::scene_key(small), small.replace('/', "/<wbr>"));
+    assert!(
+        html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", grade_page::scene_key(small)))
+    );
 }
 
 /// A wrong position that no known mistake explains is named before the polynomials that follow from it, in all formats.
@@ -427,7 +429,7 @@ fn a_student_s_page_has_no_hidden_group() {
             "Secret/crash",
             1,
             Verdict::RuntimeError,
-            crate::grade::samples::saying("a secret fall"),
+            crate::grade::samples::reason_with_text("a secret fall"),
         )
     };
     let marking = |points, visibility| Marking {

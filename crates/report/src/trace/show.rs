@@ -1,7 +1,7 @@
 //! The report on one step of a trace, as text and as JSON.
 use super::super::{
     detect::format_polynomial,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Table},
     view::{SCHEMA, numbers},
 };
@@ -18,7 +18,7 @@ pub struct ShownRecord {
     /// The position of the record in the file, in bytes.
     pub offset: u64,
     /// Whether the record is the step's mid record; otherwise it is the end record.
-    pub mid: bool,
+    pub is_mid: bool,
     /// The record's content.
     pub frame: Frame,
     /// Remarks about unusual properties of the record.
@@ -46,10 +46,10 @@ impl ShownStep<'_> {
             0 => "Initial record".to_owned(),
             step => format!("Step {step} of {}", self.steps),
         };
-        let mut text = style.paint(Look::Strong, &heading) + "\n";
+        let mut text = style.paint(TextStyle::Strong, &heading) + "\n";
         let same = matches!(self.records, [mid, end] if mid.frame.is_same(&end.frame));
         for record in self.records {
-            if record.mid && same {
+            if record.is_mid && same {
                 text += &format!(
                     "  frame {} (mid record), byte {}: the same as the end record\n",
                     record.number, record.offset
@@ -62,7 +62,7 @@ impl ShownStep<'_> {
     }
 
     fn record(&self, record: &ShownRecord, style: Style) -> String {
-        let kind = if record.mid {
+        let kind = if record.is_mid {
             "mid record"
         } else if self.step == 0 {
             "initial record"
@@ -71,7 +71,7 @@ impl ShownStep<'_> {
         };
         let mut text = format!("  frame {} ({kind}), byte {}\n", record.number, record.offset);
         for note in &record.notes {
-            text += &format!("  {}\n", style.paint(Look::Notice, &format!("odd: {note}")));
+            text += &format!("  {}\n", style.paint(TextStyle::Notice, &format!("odd: {note}")));
         }
         let frame = &record.frame;
         let mut table = Table::new([Align::Right; 5]);
@@ -90,7 +90,7 @@ impl ShownStep<'_> {
         }
         let count = frame.polynomials.len();
         text += &format!("  polynomials: {count}");
-        if !record.mid && !self.labels.is_empty() && self.labels.len() != count {
+        if !record.is_mid && !self.labels.is_empty() && self.labels.len() != count {
             text += &format!("; the reference logs {} here", self.labels.len());
         }
         text += "\n";
@@ -101,7 +101,7 @@ impl ShownStep<'_> {
                 && pass != Some(label.pass)
             {
                 pass = Some(label.pass);
-                text += &format!("    {}\n", style.paint(Look::Faint, &PassText(label.pass).to_string()));
+                text += &format!("    {}\n", style.paint(TextStyle::Faint, &PassText(label.pass).to_string()));
             }
             let place = label.map_or_else(String::new, |label| {
                 format!("{}, {}: ", PairText(label.pair), Role::from_number(label.pair.kind, label.number))
@@ -139,7 +139,7 @@ impl ShownStep<'_> {
         json!({
             "frame": record.number,
             "offset": record.offset,
-            "mid": record.mid,
+            "mid": record.is_mid,
             "positions": numbers(&frame.state.positions),
             "velocities": numbers(&frame.state.velocities),
             "impulses": frame.impulses,

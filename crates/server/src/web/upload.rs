@@ -245,7 +245,7 @@ pub(super) fn is_program(start: &[u8]) -> bool {
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;
-    match fosssim_intake::look_through(opened, ArchiveLimits::DEFAULT) {
+    match fosssim_intake::list_archive(opened, ArchiveLimits::DEFAULT) {
         Ok(files) if files.is_empty() => {
             Err("the archive contains no files, or only those that a file manager adds automatically".to_owned())
         }

@@ -41,8 +41,8 @@ const MAX_MESSAGE_BYTES: usize = 4096;
 pub(super) struct Ffmpeg {
     child: Arc<Mutex<Child>>,
     pipe: Option<ChildStdin>,
-    words: Option<JoinHandle<String>>,
-    watch: Arc<EncoderWatch>,
+    messages: Option<JoinHandle<String>>,
+    encoder_watch: Arc<EncoderWatch>,
     /// The temporary file, until it gets its final name.
     output: Option<Output>,
 }
@@ -51,8 +51,8 @@ pub(super) struct Ffmpeg {
 #[derive(Default)]
 struct EncoderWatch {
     pictures: AtomicU64,
-    over: AtomicBool,
-    given_up: AtomicBool,
+    is_over: AtomicBool,
+    is_given_up: AtomicBool,
 }
 
 impl Ffmpeg {
@@ -122,7 +122,7 @@ impl Ffmpeg {
         let watch = Arc::new(EncoderWatch::default());
         let child = Arc::new(Mutex::new(child));
         end_when_stuck(&child, &watch);
-        Ok(Self { child, pipe, words, watch, output: Some(output) })
+        Ok(Self { child, pipe, messages: words, encoder_watch: watch, output: Some(output) })
     }
 
     /// Sends a picture to the program.
@@ -133,7 +133,7 @@ impl Ffmpeg {
     pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
         let pipe = self.pipe.as_mut().context("ffmpeg accepts no pictures")?;
         pipe.write_all(rgba).context("ffmpeg accepts no more pictures")?;
-        self.watch.pictures.fetch_add(1, Ordering::Relaxed);
+        self.encoder_watch.pictures.fetch_add(1, Ordering::Relaxed);
         Ok(())
     }
 
@@ -144,7 +144,7 @@ impl Ffmpeg {
     /// Fails if drawing or the program failed. The error contains the program's output, and there is no film.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
-        self.watch.pictures.fetch_add(1, Ordering::Relaxed);
+        self.encoder_watch.pictures.fetch_add(1, Ordering::Relaxed);
         let status = loop {
             // The lock is released while waiting, because the watching thread needs it.
             let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
@@ -153,9 +153,9 @@ impl Ffmpeg {
                 None => thread::sleep(Duration::from_millis(10)),
             }
         };
-        self.watch.over.store(true, Ordering::Relaxed);
-        let words = self.words.take().and_then(|words| words.join().ok()).unwrap_or_default();
-        if self.watch.given_up.load(Ordering::Relaxed) {
+        self.encoder_watch.is_over.store(true, Ordering::Relaxed);
+        let words = self.messages.take().and_then(|words| words.join().ok()).unwrap_or_default();
+        if self.encoder_watch.is_given_up.load(Ordering::Relaxed) {
             bail!("ffmpeg read no picture for {} seconds and was ended", STUCK_TIME.as_secs());
         }
         if !status.success() {
@@ -168,7 +168,7 @@ impl Ffmpeg {
 
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
-        self.watch.over.store(true, Ordering::Relaxed);
+        self.encoder_watch.is_over.store(true, Ordering::Relaxed);
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(None) = child.try_wait() {
             let _ = child.kill();
@@ -182,13 +182,13 @@ fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {
         let (mut seen, mut since) = (0, Instant::now());
-        while !watch.over.load(Ordering::Relaxed) {
+        while !watch.is_over.load(Ordering::Relaxed) {
             thread::sleep(Duration::from_millis(200));
             let pictures = watch.pictures.load(Ordering::Relaxed);
             if pictures != seen {
                 (seen, since) = (pictures, Instant::now());
-            } else if since.elapsed() > STUCK_TIME && !watch.over.load(Ordering::Relaxed) {
-                watch.given_up.store(true, Ordering::Relaxed);
+            } else if since.elapsed() > STUCK_TIME && !watch.is_over.load(Ordering::Relaxed) {
+                watch.is_given_up.store(true, Ordering::Relaxed);
                 let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
                 return;
             }

@@ -36,14 +36,14 @@ const MAX_PICTURES: u32 = 100_000;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let form = output_format(arguments)?;
-    let scene = input::scene(&arguments.scene)?;
-    let picks = picked_steps(arguments, form, &scene.scene)?;
+    let scene = input::read_scene(&arguments.scene)?;
+    let picks = select_steps(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::MAX_RATE) };
     // The output is checked first. If it is invalid, this is reported before the work begins.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
         Some(trace) => motion::read_motion(&scene.scene, trace, picks)?,
-        None => motion::reference(&scene.scene, picks)?,
+        None => motion::simulate_reference(&scene.scene, picks)?,
     };
     let overlay = &arguments.overlay;
     let overlay = overlay.as_ref().map(|trace| motion::read_motion(&scene.scene, trace, picks)).transpose()?;
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
         .filter_map(|motion| Some(format!("{} ends early: {}\n", motion.name, motion.stopped.as_ref()?)))
         .collect();
     let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
-    let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
+    let mut reel = DrawableMotion::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, RenderTarget::Stream(_)) && arguments.output == Path::new("-");
     let place = input::printable_name(&arguments.output);
     let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
@@ -113,7 +113,7 @@ const fn is_film(form: RenderFormat) -> bool {
 }
 
 /// Returns the steps for which pictures are drawn.
-fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<StepRange> {
+fn select_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<StepRange> {
     let last = scene.step_count();
     if let Some(step) = arguments.step {
         if step > last {
@@ -144,15 +144,15 @@ fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
 }
 
 /// A motion, and everything that is needed to draw it.
-struct Reel {
+struct DrawableMotion {
     painter: Painter,
     main: Motion,
     overlay: Option<Motion>,
-    picks: StepRange,
-    single: bool,
+    steps: StepRange,
+    is_single: bool,
 }
 
-impl Reel {
+impl DrawableMotion {
     fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: PictureOptions, picks: StepRange) -> Self {
         let mut extent = main.extent;
         if let Some(overlay) = &overlay {
@@ -161,8 +161,8 @@ impl Reel {
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let start = Extent::for_scene(scene, &start);
         extent.join(&start);
-        let painter = Painter::new(scene, &extent.limited_to(&start), options);
-        Self { painter, main, overlay, picks, single: false }
+        let painter = Painter::new(scene, &extent.limit_to(&start), options);
+        Self { painter, main, overlay, steps: picks, is_single: false }
     }
 
     fn size(&self) -> Size {
@@ -174,7 +174,7 @@ impl Reel {
         let (mut place, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
         for number in 1..=self.main.pictures {
-            let step = self.picks.step(number);
+            let step = self.steps.step(number);
             if !self.main.next(&mut place)? {
                 bail!("the stored motion of {} changed while it was being read", self.main.name);
             }
@@ -183,7 +183,7 @@ impl Reel {
                 None => false,
             };
             let shapes = self.painter.picture(step, &place, overlaid.then_some(&other[..]));
-            if !self.single || number == self.main.pictures {
+            if !self.is_single || number == self.main.pictures {
                 draw(number, step, &shapes)?;
             }
             bar.show_step(number);
@@ -225,14 +225,14 @@ impl RenderTarget {
     }
 
     /// Draws all pictures, and describes the result for the user.
-    fn draw(self, form: RenderFormat, reel: &mut Reel, rate: Rate) -> Result<String> {
+    fn draw(self, form: RenderFormat, reel: &mut DrawableMotion, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
-        let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {
+        let steps = match (reel.steps.step(1), reel.steps.step(pictures)) {
             (first, last) if first == last => format!("step {first}"),
             (first, last) => format!("steps {first} to {last}"),
         };
         let counted_pictures = format_count(pictures.into(), "picture");
-        let every = match reel.picks.every {
+        let every = match reel.steps.every {
             1 => String::new(),
             every => format!(", every {every}th"),
         };
@@ -267,7 +267,7 @@ impl RenderTarget {
                 Ok(format!("{counted_pictures} of {size}: {steps}{every}, {files},"))
             }
             (Self::Stream(mut output), RenderFormat::Svg | RenderFormat::Png) => {
-                reel.single = true;
+                reel.is_single = true;
                 let background = reel.painter.background();
                 let mut raster = Raster::new(size);
                 reel.for_each(|_, step, shapes| {
@@ -275,7 +275,7 @@ impl RenderTarget {
                     Ok(output.write_all(&bytes)?)
                 })?;
                 output.finish()?;
-                Ok(format!("A picture of {size}: step {},", reel.picks.last.min(reel.picks.step(pictures))))
+                Ok(format!("A picture of {size}: step {},", reel.steps.last.min(reel.steps.step(pictures))))
             }
             (Self::Stream(output), RenderFormat::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;

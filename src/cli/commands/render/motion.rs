@@ -80,22 +80,22 @@ impl Motion {
 }
 
 /// A motion whose positions are still being stored.
-struct FilmKeeper<'a> {
+struct MotionWriter<'a> {
     scene: &'a Scene,
-    picks: StepRange,
+    steps: StepRange,
     file: BufWriter<SpooledTempFile>,
     pictures: u32,
     extent: Extent,
 }
 
-impl<'a> FilmKeeper<'a> {
+impl<'a> MotionWriter<'a> {
     fn new(scene: &'a Scene, picks: StepRange) -> Self {
         let file = BufWriter::new(tempfile::spooled_tempfile(MAX_MEMORY_BYTES));
-        Self { scene, picks, file, pictures: 0, extent: Extent::default() }
+        Self { scene, steps: picks, file, pictures: 0, extent: Extent::default() }
     }
 
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<()> {
-        if self.picks.contains(step) {
+        if self.steps.contains(step) {
             self.extent.add(self.scene, positions);
             for value in positions {
                 self.file.write_all(&value.to_le_bytes()).context("cannot write a temporary file")?;
@@ -119,8 +119,8 @@ impl<'a> FilmKeeper<'a> {
 /// # Errors
 ///
 /// Fails if the motion can't be stored.
-pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
-    let mut keeper = FilmKeeper::new(scene, picks);
+pub(super) fn simulate_reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
+    let mut keeper = MotionWriter::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     keeper.step(0, &simulation.state().positions)?;
     let mut bar = console::Bar::new(picks.last);
@@ -144,10 +144,10 @@ pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
 /// Fails if the trace can't be opened or stored, or the operating system fails while it is read. If the trace is
 /// damaged, the motion only ends there.
 pub(super) fn read_motion(scene: &Scene, name: &Path, picks: StepRange) -> Result<Motion> {
-    let mut trace = input::trace(name)?;
+    let mut trace = input::open_trace(name)?;
     let layout = Layout::for_scene(scene);
     let mut reader = trace.records(scene);
-    let mut keeper = FilmKeeper::new(scene, picks);
+    let mut keeper = MotionWriter::new(scene, picks);
     let mut frame = Frame::default();
     let mut stopped = None;
     loop {

@@ -1,14 +1,14 @@
 //! The closing lines of a report on one submission, which give the result. It is short enough for a small terminal and
 //! comes last, so that it stays visible.
 use super::{Text, verdict_style};
-use crate::foreign::{one_line, strip_control_characters};
+use crate::untrusted_text::{strip_control_characters, to_one_line};
 use crate::{
     grade::{
-        by_cause, change_lines, count_wrong, describe_likely, describe_speed, describe_worth, detail_likely,
-        find_likely_mistakes, format_optional_points, format_points, head_likely,
+        change_lines, count_wrong, describe_likely, describe_speed, describe_worth, detail_likely,
+        find_likely_mistakes, format_optional_points, format_points, group_by_cause, head_likely,
     },
     number::format_count,
-    style::Look,
+    style::TextStyle,
     table::{Align, Cell, Table},
     words,
 };
@@ -29,27 +29,27 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     text += &render_groups(options, grade);
     for (number, (look, line)) in change_lines(grade).into_iter().enumerate() {
         if number == 0 {
-            let _ = writeln!(text, "{}", style.paint(Look::Strong, "Since the earlier grading"));
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Since the earlier grading"));
         }
-        let _ = writeln!(text, "  - {}", style.paint(look, &one_line(&line)));
+        let _ = writeln!(text, "  - {}", style.paint(look, &to_one_line(&line)));
     }
     if let Some(located) = &grade.located_failure {
-        let heading = style.paint(Look::Strong, "Where it fails");
-        let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
+        let heading = style.paint(TextStyle::Strong, "Where it fails");
+        let _ = writeln!(text, "{heading}\n  - {}", to_one_line(&words::describe_located(located)));
     }
     // A fault of the whole submission explains what is wrong in all groups.
     let mistakes = if grade.submission_fault().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
-            let _ = writeln!(text, "{}", style.paint(Look::Strong, head_likely(&mistakes)));
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, head_likely(&mistakes)));
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = strip_control_characters(&describe_likely(grade, mistake));
         let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         if let Some(note) = grade.course_note(mistake) {
-            let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
+            let _ = writeln!(text, "    The course: {}", to_one_line(&note.to_string()));
         }
         for form in detail_likely(grade, mistake) {
             let _ = writeln!(text, "    {}", strip_control_characters(&form));
@@ -58,12 +58,12 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     if grade.submission_fault().is_some() {
         return text;
     }
-    let causes = by_cause(grade);
+    let causes = group_by_cause(grade);
     if let Some(scene) = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()) {
         let code = style.paint(verdict_style(scene.verdict), scene.verdict.code());
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scene to look at first"));
-        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summarize(scene)));
-        for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scene to look at first"));
+        let _ = writeln!(text, "  {code} {}: {}", to_one_line(&scene.scene), to_one_line(&words::summarize(scene)));
+        for line in options.advice.map(|closer| closer(grade, scene)).unwrap_or_default() {
             let _ = writeln!(text, "  {line}");
         }
     }
@@ -79,19 +79,19 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
         listed.sort_by_key(|group| group.verdict.is_accepted());
     }
     for group in listed.iter().take(shown) {
-        let name = one_line(&group.name);
+        let name = to_one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
         let score = format!("{} of {}{extra}", format_optional_points(group.points), format_points(group.max_points));
         table.row([
             name.into(),
             score.into(),
-            Cell::with_look(verdict_style(group.verdict), group.verdict.code()),
+            Cell::with_style(verdict_style(group.verdict), group.verdict.code()),
             describe_share(group).into(),
         ]);
     }
     let mut text = table.render(options.style);
     for (group, speed) in grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))) {
-        let _ = writeln!(text, "  {}: {}", one_line(&group.name), describe_speed(speed));
+        let _ = writeln!(text, "  {}: {}", to_one_line(&group.name), describe_speed(speed));
     }
     if shown < listed.len() {
         let _ = writeln!(text, "  and {}", format_count((listed.len() - shown) as u64, "more group"));

@@ -7,9 +7,9 @@ mod table;
 
 pub use table::{render_table, shorten_name};
 
-use super::{super::style::Style, format_points, format_score, no_points};
-use crate::foreign::{clean_output, one_line, strip_control_characters};
-use crate::{number::format_count, smallest, style::Look, words};
+use super::{super::style::Style, describe_missing_points, format_points, format_score};
+use crate::untrusted_text::{clean_output, strip_control_characters, to_one_line};
+use crate::{number::format_count, smallest, style::TextStyle, words};
 use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
@@ -40,11 +40,11 @@ pub struct Text<'a> {
     /// The style of terminal text.
     pub style: Style,
     /// The amount of detail for each submission.
-    pub shown: TextDetail,
+    pub detail: TextDetail,
     /// The maximum width of tables in columns; `None` for no limit.
     pub width: Option<usize>,
     /// The function that suggests commands with which the reader sees more of the first wrong scene.
-    pub closer: Option<Advice<'a>>,
+    pub advice: Option<Advice<'a>>,
 }
 
 impl Text<'_> {
@@ -52,22 +52,22 @@ impl Text<'_> {
     #[must_use]
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
-        if self.shown == TextDetail::Table && grades.len() > 1 {
+        if self.detail == TextDetail::Table && grades.len() > 1 {
             let unfit = |grade: &Grade| {
-                let why = self.unfit(grade)?;
-                Some(format!("{}: {why}\n", table::shorten_name(&one_line(&grade.submission))))
+                let why = self.describe_submission_fault(grade)?;
+                Some(format!("{}: {why}\n", table::shorten_name(&to_one_line(&grade.submission))))
             };
             return render_table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
         for grade in grades {
-            if self.shown == TextDetail::Line {
-                let why = self.unfit(grade).map(|unfit| format!(": {unfit}")).unwrap_or_default();
+            if self.detail == TextDetail::Line {
+                let why = self.describe_submission_fault(grade).map(|unfit| format!(": {unfit}")).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.write_submission(&mut text, grade, grades.len() > 1);
             }
         }
-        if grades.len() > 1 && self.shown > TextDetail::Line {
+        if grades.len() > 1 && self.detail > TextDetail::Line {
             text += &render_table(grades, self.width, self.style);
         }
         text
@@ -93,40 +93,44 @@ impl Text<'_> {
 
     /// Renders one line with the submission's name, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
-        let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
-        let (name, verdict) = (one_line(&grade.submission), grade.verdict.name());
+        let look = if grade.verdict.is_accepted() { TextStyle::Good } else { TextStyle::Bad };
+        let (name, verdict) = (to_one_line(&grade.submission), grade.verdict.name());
         let reached = match grade.points {
-            Some(reached) => format_score(reached, grade.max_points) + &extra(grade),
-            None => no_points(grade).unwrap_or_default(),
+            Some(reached) => format_score(reached, grade.max_points) + &describe_extra_points(grade),
+            None => describe_missing_points(grade).unwrap_or_default(),
         };
-        format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
+        format!("{}: {}, {reached}", self.style.paint(TextStyle::Strong, &name), self.style.paint(look, verdict))
     }
 
     /// Describes the fault of the whole submission. If the reader runs the command, the text also names the option that
     /// helps.
-    fn unfit(&self, grade: &Grade) -> Option<String> {
-        let option = match (grade.submission_fault(), self.closer) {
+    fn describe_submission_fault(&self, grade: &Grade) -> Option<String> {
+        let option = match (grade.submission_fault(), self.advice) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
                 format!(": grade it with --suite {}", other.definition().key)
             }
             _ => String::new(),
         };
-        words::describe_unfit(grade).map(|unfit| one_line(&unfit) + &option)
+        words::describe_unfit(grade).map(|unfit| to_one_line(&unfit) + &option)
     }
 
     /// Renders the lines above the scenes: the suite, the weaknesses of the sandbox, and a failed build.
     fn render_header(&self, grade: &Grade) -> String {
-        let mut text = format!("suite {}{}\n", one_line(&grade.suite), describe_rules(grade));
+        let mut text = format!("suite {}{}\n", to_one_line(&grade.suite), describe_rules(grade));
         for warning in &grade.warnings {
-            let _ =
-                writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), strip_control_characters(warning));
+            let _ = writeln!(
+                text,
+                "{}: {}",
+                self.style.paint(TextStyle::Notice, "warning"),
+                strip_control_characters(warning)
+            );
         }
         let build = grade.failed_build();
-        if let (Some(unfit), None) = (self.unfit(grade), build) {
+        if let (Some(unfit), None) = (self.describe_submission_fault(grade), build) {
             let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
-            let most = if self.shown < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
+            let most = if self.detail < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
             let _ = writeln!(
                 text,
                 "\n{}\n{}",
@@ -140,7 +144,7 @@ impl Text<'_> {
 
 /// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
 #[must_use]
-pub fn extra(grade: &Grade) -> String {
+pub fn describe_extra_points(grade: &Grade) -> String {
     grade.extra_points().map_or_else(String::new, |(reached, most)| {
         format!(
             ", {} of {} extra point{}",
@@ -166,11 +170,11 @@ fn describe_rules(grade: &Grade) -> String {
 }
 
 /// Returns the style in which a scene's verdict is shown.
-const fn verdict_style(verdict: Verdict) -> Look {
+const fn verdict_style(verdict: Verdict) -> TextStyle {
     match verdict {
-        Verdict::Accepted => Look::Good,
-        Verdict::NotRun => Look::Notice,
-        _ => Look::Bad,
+        Verdict::Accepted => TextStyle::Good,
+        Verdict::NotRun => TextStyle::Notice,
+        _ => TextStyle::Bad,
     }
 }
 

@@ -1,12 +1,14 @@
 //! The scenes of a submission, group by group. Accepted scenes are only counted. If scenes fail for the same cause,
 //! only one of them is described.
-use super::{super::phrases::list_some, Text, TextDetail, quote_output, verdict_style};
-use crate::foreign::one_line;
+use super::{super::phrases::list_first, Text, TextDetail, quote_output, verdict_style};
+use crate::untrusted_text::to_one_line;
 use crate::{
     explain,
-    grade::{AlikeScenes, by_cause, describe_difference, format_optional_points, format_points, text::MAX_SHOWN_LINES},
+    grade::{
+        AlikeScenes, describe_difference, format_optional_points, format_points, group_by_cause, text::MAX_SHOWN_LINES,
+    },
     number::format_count,
-    style::Look,
+    style::TextStyle,
     words,
     wrap::count_columns,
 };
@@ -23,16 +25,16 @@ const MAX_NAMED: usize = 3;
 /// Renders the groups in which there is something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     // A fault of the whole submission is reported once, and not for each scene.
-    if options.shown < TextDetail::Wrong || grade.submission_fault().is_some() {
+    if options.detail < TextDetail::Wrong || grade.submission_fault().is_some() {
         return String::new();
     }
-    let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
-    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&one_line(&scene.scene)));
+    let shown = |scene: &SceneGrade| options.detail == TextDetail::All || !scene.verdict.is_accepted();
+    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&to_one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let scenes = Scenes { options, width, by_cause: by_cause(grade) };
+    let scenes = Scenes { options, width, by_cause: group_by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     let mut text: String = groups.map(|group| scenes.render_group(group)).collect();
-    if scenes.by_cause.len() > MAX_DESCRIBED && options.shown < TextDetail::All {
+    if scenes.by_cause.len() > MAX_DESCRIBED && options.detail < TextDetail::All {
         text += "\nExamples of all causes: -v\n";
     }
     text
@@ -48,7 +50,7 @@ struct Scenes<'a, 'b> {
 impl<'a> Scenes<'a, '_> {
     fn render_group(&self, group: &'a GroupGrade) -> String {
         let style = self.options.style;
-        let name = style.paint(Look::Strong, &one_line(&group.name));
+        let name = style.paint(TextStyle::Strong, &to_one_line(&group.name));
         let extra = if group.extra { " extra" } else { "" };
         let mut text = format!(
             "\n{name} ({} of {}{extra})\n",
@@ -56,12 +58,12 @@ impl<'a> Scenes<'a, '_> {
             format_points(group.max_points)
         );
         if let Some(note) = &group.note {
-            text += &format!("  {}\n", one_line(&note.to_string()));
+            text += &format!("  {}\n", to_one_line(&note.to_string()));
         }
         let mut folded: BTreeMap<(Verdict, String), u64> = BTreeMap::new();
         for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
             let example = self.alike_scenes(scene).first().filter(|_| !scene.verdict.is_accepted());
-            let like = example.map_or_else(String::new, |example| format!(" like {}", one_line(&example.scene)));
+            let like = example.map_or_else(String::new, |example| format!(" like {}", to_one_line(&example.scene)));
             *folded.entry((scene.verdict, like)).or_default() += 1;
         }
         let row = |((verdict, like), count): ((Verdict, String), u64)| {
@@ -82,7 +84,7 @@ impl<'a> Scenes<'a, '_> {
     /// Returns whether a scene is only counted. It is either accepted, or has the same cause as another scene that is
     /// described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
-        self.options.shown < TextDetail::All
+        self.options.detail < TextDetail::All
             && (scene.verdict.is_accepted()
                 || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
@@ -96,11 +98,11 @@ impl<'a> Scenes<'a, '_> {
     /// Returns whether the scene's cause is one of those that are described with an example.
     fn is_described(&self, scene: &SceneGrade) -> bool {
         let mut causes = self.by_cause.iter().take(MAX_DESCRIBED);
-        self.options.shown == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
+        self.options.detail == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
     }
 
     fn render_row(&self, scene: &SceneGrade) -> String {
-        let (name, style) = (one_line(&scene.scene), self.options.style);
+        let (name, style) = (to_one_line(&scene.scene), self.options.style);
         let code = style.paint(verdict_style(scene.verdict), &format!("{:<3}", scene.verdict.code()));
         let blanks = " ".repeat(self.width.saturating_sub(count_columns(&name)));
         format!(
@@ -113,22 +115,23 @@ impl<'a> Scenes<'a, '_> {
     fn render_details(&self, scene: &SceneGrade) -> String {
         let mut lines = Vec::new();
         if !scene.verdict.is_accepted() {
-            lines.push(one_line(&words::summarize(scene)));
+            lines.push(to_one_line(&words::summarize(scene)));
         }
         lines.extend(describe_difference(scene));
         if self.is_described(scene) {
             let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
-            let likely = explain::lines(&scene.corrected_explanations, self.options.style);
-            lines.extend(details.iter().chain(&likely).map(|line| one_line(line)));
+            let likely = explain::explanation_texts(&scene.corrected_explanations, self.options.style);
+            lines.extend(details.iter().chain(&likely).map(|line| to_one_line(line)));
         } else {
-            lines.extend(explain::render_sentence(&scene.corrected_explanations).map(|sentence| one_line(&sentence)));
+            lines
+                .extend(explain::render_sentence(&scene.corrected_explanations).map(|sentence| to_one_line(&sentence)));
         }
         if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene
             && !alike.is_empty()
         {
             let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
-            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, MAX_NAMED));
+            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_first(&names, MAX_NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();

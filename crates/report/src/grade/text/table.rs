@@ -1,8 +1,8 @@
 //! The table of a class, with one row per submission.
-use crate::foreign::one_line;
+use crate::untrusted_text::to_one_line;
 use crate::{
     grade::format_optional_points,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     wrap::count_columns,
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
@@ -10,7 +10,7 @@ use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 /// A column of the table: its cells, of which the first is the heading, and their alignment.
 struct TextColumn {
     cells: Vec<String>,
-    right: bool,
+    is_right_aligned: bool,
 }
 
 /// Renders one row per submission with the points, the worst verdict, the scenes of each group, and the time. If the
@@ -20,9 +20,9 @@ struct TextColumn {
 pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
-        TextColumn { cells, right }
+        TextColumn { cells, is_right_aligned: right }
     };
-    let name = of("submission", false, &|grade| shorten_name(&one_line(&grade.submission)));
+    let name = of("submission", false, &|grade| shorten_name(&to_one_line(&grade.submission)));
     let score = of("points", true, &|grade| format_optional_points(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.name().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
@@ -38,8 +38,8 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
             let name = if is_tests { names[number].trim_end_matches(GROUP_SUFFIX) } else { names[number] };
-            of(&shorten_name(&one_line(name)), false, &|grade| {
-                grade.groups.get(number).map_or_else(String::new, cell_of)
+            of(&shorten_name(&to_one_line(name)), false, &|grade| {
+                grade.groups.get(number).map_or_else(String::new, group_cell)
             })
         })
         .collect();
@@ -108,13 +108,13 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
             let cell = &column.cells[row];
             let blanks = " ".repeat(column_width(column) - count_columns(cell));
             let look = match row.checked_sub(1) {
-                None => Some(Look::Faint),
+                None => Some(TextStyle::Faint),
                 // Column 2 contains the verdict.
                 Some(grade) if number == 2 => Some(super::verdict_style(grades[grade].verdict)),
                 Some(_) => None,
             };
             let cell = look.map_or_else(|| cell.clone(), |look| style.paint(look, cell));
-            line += &if column.right { format!("{blanks}{cell}  ") } else { format!("{cell}{blanks}  ") };
+            line += &if column.is_right_aligned { format!("{blanks}{cell}  ") } else { format!("{cell}{blanks}  ") };
         }
         text += line.trim_end();
         text += "\n";
@@ -123,7 +123,7 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
 }
 
 /// Returns the text of a cell: `AC`, or the worst verdict and the number of accepted scenes.
-fn cell_of(group: &GroupGrade) -> String {
+fn group_cell(group: &GroupGrade) -> String {
     let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
     if accepted == group.scenes.len() {
         "AC".to_owned()

@@ -6,10 +6,10 @@ use fosssim_model::sim::PairKind;
 /// polynomials, and the rotation in lines about zones. `kinds` are the kinds of pairs that the lines are about, if they
 /// are known.
 pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
-    let example = lines.iter().find_map(|line| difference(line, |_| true));
+    let example = lines.iter().find_map(|line| find_difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
     let is_edge = all(PairKind::ParticleEdge)
-        || lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
+        || lines.iter().any(|line| find_difference(line, |number| number == '3').is_some() || line.contains("re^2"));
     let has_turn = lines.iter().any(|line| line.contains("x_cm"));
     let reach = !has_turn && lines.iter().any(|line| split_words(line).any(|word| word == "R"));
     let mut parts = Vec::new();
@@ -51,7 +51,7 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
 }
 
 /// Returns a line in which two radii have the names that fit the kind of pair: the radius of an edge is `re`.
-pub(super) fn radii(line: &str, of_edges: bool) -> String {
+pub(super) fn name_radii(line: &str, of_edges: bool) -> String {
     if of_edges { line.replace("r2", "re") } else { line.to_owned() }
 }
 
@@ -62,7 +62,7 @@ fn split_words(line: &str) -> impl Iterator<Item = &str> {
 
 /// Returns the first name in a line such as `x21` or `d32` whose letter satisfies `has`. The result is the letter and
 /// the two numbers.
-fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
+fn find_difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
     split_words(line).find_map(|word| {
         let mut letters = word.chars();
         let name = (letters.next()?, letters.next()?, letters.next()?);
@@ -85,7 +85,7 @@ mod tests {
     fn radii_have_the_names_of_their_pair() {
         let line = "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
         let of_kinds = |kinds: &[PairKind]| {
-            let line = radii(line, kinds == [PairKind::ParticleEdge]);
+            let line = name_radii(line, kinds == [PairKind::ParticleEdge]);
             let told = explain_letters(std::slice::from_ref(&line), kinds).expect("it has short names");
             (line, told)
         };

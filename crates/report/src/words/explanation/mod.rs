@@ -3,11 +3,11 @@
 //! Sentences that depend on an assignment are found by their keys in the assignment's data: the known mistakes, and the
 //! meanings of letters. All other sentences are in this module.
 mod letters;
-mod near;
-mod not_finite;
+mod non_finite;
 mod places;
 mod polynomials;
 mod stages;
+mod wrong_pairs;
 
 use fosssim_mistakes::diagnose::{
     Detail, Explanation, ExplanationTopic, PolynomialDetail, PolynomialEvidence, find_formula,
@@ -29,10 +29,10 @@ pub fn describe(explanation: &Explanation) -> String {
             let length = if *has_length { "" } else { ", and neither is its length" };
             format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
-        ExplanationTopic::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
+        ExplanationTopic::Polynomials { subjects, found } => polynomials::describe_evidence(subjects, found),
         ExplanationTopic::Stage(fault) => stages::describe(fault),
-        ExplanationTopic::Pairs(wrong) => near::describe(wrong),
-        ExplanationTopic::NotFinite(found) => not_finite::describe(found),
+        ExplanationTopic::Pairs(wrong) => wrong_pairs::describe(wrong),
+        ExplanationTopic::NotFinite(found) => non_finite::describe(found),
     };
     debug_assert!(find_formula(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
     sentence
@@ -41,7 +41,7 @@ pub fn describe(explanation: &Explanation) -> String {
 /// Describes the mistake in a list of a program's mistakes, together with other mistakes that the traces can't
 /// distinguish from it.
 #[must_use]
-pub fn what_or(explanation: &Explanation) -> String {
+pub fn describe_with_alternatives(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.topic == ExplanationTopic::Mistake);
     let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
     let sentence = describe(explanation);
@@ -64,12 +64,12 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
     let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
     if let (ExplanationTopic::Pairs(wrong), [_, ..]) = (&explanation.topic, &explanation.details[..]) {
-        lines.extend(near::list_details(wrong));
+        lines.extend(wrong_pairs::list_details(wrong));
     }
     for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
-            Detail::SearchArea(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
+            Detail::SearchArea(Area::Integrator) => Some(describe_step_area(&explanation.key).to_owned()),
             Detail::SearchArea(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
@@ -91,7 +91,7 @@ pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
 }
 
 /// Returns advice about where in the program a wrong stage probably is.
-pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
+pub(crate) fn describe_search_area(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.topic {
         ExplanationTopic::Stage(fault) => fault.areas().first().map(|area| area.advice()),
         _ => None,
@@ -136,7 +136,7 @@ fn describe_unfinished(keys: &[String]) -> String {
 
 /// Returns the sentence about a mistake in a step without collisions. The subject of the sentence depends on the
 /// mistake's key.
-fn look_at_step(key: &str) -> &'static str {
+fn describe_step_area(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {
         () if has(&["fixed"]) => "Look at how a step treats fixed particles.",

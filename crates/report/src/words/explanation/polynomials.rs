@@ -4,7 +4,7 @@ use fosssim_mistakes::diagnose::{Guess, PolynomialDetail, PolynomialEvidence, Su
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
 /// Describes the fault of wrong polynomials.
-pub(super) fn describe_fault_of(subjects: &[Subject], found: &PolynomialEvidence) -> String {
+pub(super) fn describe_evidence(subjects: &[Subject], found: &PolynomialEvidence) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
     let place = capitalize(&names);
@@ -68,7 +68,7 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::FirstOnly(length) => format!("only the first {length} coefficients are there"),
         PolynomialDetail::Displacements(factor) => format!("every displacement is multiplied by {factor}"),
         PolynomialDetail::Named { key, of_edges } => {
-            letters::radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
+            letters::name_radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
         }
         PolynomialDetail::StandsFor { reading, letter, stand } => describe_substitute(*reading, letter, stand),
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),

@@ -108,15 +108,15 @@ fn describe_responses(wrong: &WrongResponses) -> String {
                 all.iter().map(|one| format!("the {} of {}", singular(one.quantity), body(one))).collect();
             format!("unchanged by contacts: {}", list.join(", "))
         }
-        WrongResponses::Across(all) => format!("{} also across the contact vector", who_changes(all)),
+        WrongResponses::Across(all) => format!("{} also across the contact vector", name_changed_objects(all)),
         WrongResponses::Amount(all) => {
-            format!("{} along the contact vector, but not by the right amount", who_changes(all))
+            format!("{} along the contact vector, but not by the right amount", name_changed_objects(all))
         }
     }
 }
 
 /// Names the objects whose quantities change wrongly.
-fn who_changes(all: &[ChangedQuantity]) -> String {
+fn name_changed_objects(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
     match (&quantities[..], &bodies[..]) {
@@ -166,8 +166,8 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         StageDetail::Impacts { right: true, count, low, high } => {
             format!("of those that are right ({count}): {low:.4} to {high:.4}")
         }
-        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, 1.0) => return None,
-        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points backwards".to_owned(),
+        StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, 1.0) => return None,
+        StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
         StageDetail::Vectors(ratios) => format!("{} as long along the right one", describe_ratio(*ratios)),
         StageDetail::VectorError(part) => format!("off by at most {part:.1e} of its length"),
@@ -192,11 +192,11 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
         StageDetail::ZoneCount { count, of } => format!("in {count} of {of} zones of the first round"),
-        StageDetail::StoppedVelocities(Ratios::All(ratio)) if is(*ratio, 1.0) => {
+        StageDetail::StoppedVelocities(Ratios::All(ratio)) if is_about(*ratio, 1.0) => {
             "they keep the velocity from before".to_owned()
         }
         StageDetail::StoppedVelocities(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
-        StageDetail::CenterMotion(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
+        StageDetail::CenterMotion(Ratios::All(ratio)) if is_about(*ratio, 0.0) => "it does not move".to_owned(),
         StageDetail::CenterMotion(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
         StageDetail::CenterMotion(ratios) => format!("it moves {} as far", describe_ratio(*ratios)),
         StageDetail::CenterDirection => "its direction is wrong, too".to_owned(),
@@ -212,7 +212,7 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
 }
 
 /// Returns whether a measured ratio equals `value`, up to a tolerance.
-fn is(ratio: f64, value: f64) -> bool {
+fn is_about(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }
 

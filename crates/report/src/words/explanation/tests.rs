@@ -282,7 +282,7 @@ fn advice_on_a_step_fits_its_mistake() {
         ("explicit-positions-other-velocity", "order"),
         ("symplectic-velocities-mass", "forces change velocities"),
     ] {
-        assert!(find(key).is_some() && super::look_at_step(key).contains(word), "{key}");
+        assert!(find(key).is_some() && super::describe_step_area(key).contains(word), "{key}");
     }
 }
 

@@ -12,12 +12,12 @@ pub const RIGHT_ID: &str = "right";
 /// The number of bytes that are reserved for the id, or for several ids separated by commas. Unused bytes are zero.
 const ID_BYTES: usize = 256;
 /// The number of bytes of the reserved place.
-const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
+const SLOT_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 
 /// The reserved place for the id in the program.
-type Place = [u8; PLACE_BYTES];
+type PinSlot = [u8; SLOT_BYTES];
 
-static PINNED_ID: Place = empty();
+static PINNED_ID: PinSlot = empty_slot();
 
 /// Returns the mistake that is pinned to this program, if there is one.
 #[must_use]
@@ -26,8 +26,8 @@ pub fn pinned_mistake() -> Option<&'static str> {
 }
 
 /// Returns a reserved place that contains no mistake.
-const fn empty() -> Place {
-    let mut place = [0; PLACE_BYTES];
+const fn empty_slot() -> PinSlot {
+    let mut place = [0; SLOT_BYTES];
     let mut at = 0;
     while at < MARK_BACKWARDS.len() {
         place[at] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - at];
@@ -37,7 +37,7 @@ const fn empty() -> Place {
 }
 
 /// Reads the mistake in a reserved place, if it contains one.
-fn read(place: &Place) -> Option<&str> {
+fn read(place: &PinSlot) -> Option<&str> {
     // The compiler must not assume the content of the place, because it is overwritten later.
     let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
@@ -53,7 +53,7 @@ pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
     let (Some(at), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
-    let room = copy.get_mut(at + mark.len()..at + PLACE_BYTES)?;
+    let room = copy.get_mut(at + mark.len()..at + SLOT_BYTES)?;
     // One byte must remain zero, to mark the end of the id.
     if id.is_empty() || id.len() >= room.len() {
         return None;
@@ -69,24 +69,24 @@ mod tests {
 
     #[test]
     fn what_is_pinned_is_read_again() {
-        let program = |place: &Place| [b"before", &place[..], b"after"].concat();
-        assert_eq!(read(&empty()), None);
-        let pinned = write(&program(&empty()), "pe-square-no-eh").expect("a place");
-        let place: &Place = pinned[6..6 + PLACE_BYTES].try_into().expect("as long");
+        let program = |place: &PinSlot| [b"before", &place[..], b"after"].concat();
+        assert_eq!(read(&empty_slot()), None);
+        let pinned = write(&program(&empty_slot()), "pe-square-no-eh").expect("a place");
+        let place: &PinSlot = pinned[6..6 + SLOT_BYTES].try_into().expect("as long");
         assert_eq!(read(place), Some("pe-square-no-eh"));
-        assert_eq!((&pinned[..6], &pinned[6 + PLACE_BYTES..]), (&b"before"[..], &b"after"[..]));
+        assert_eq!((&pinned[..6], &pinned[6 + SLOT_BYTES..]), (&b"before"[..], &b"after"[..]));
         // Another id may be written over it, also a shorter one.
         let again = write(&pinned, "short").expect("a place");
-        assert_eq!(read(again[6..6 + PLACE_BYTES].try_into().expect("as long")), Some("short"));
+        assert_eq!(read(again[6..6 + SLOT_BYTES].try_into().expect("as long")), Some("short"));
     }
 
     #[test]
     fn a_program_without_one_place_for_it_is_left_alone() {
-        let place = empty();
+        let place = empty_slot();
         assert_eq!(write(b"no sample at all", "a"), None);
         assert_eq!(write(&[place, place].concat(), "a"), None);
         assert_eq!(write(&place, ""), None);
         assert_eq!(write(&place, &"x".repeat(ID_BYTES)), None);
-        assert_eq!(write(&place[..PLACE_BYTES - 1], "a"), None);
+        assert_eq!(write(&place[..SLOT_BYTES - 1], "a"), None);
     }
 }

@@ -6,16 +6,16 @@ use std::{
 };
 
 /// The progress bars that are visible.
-static ON_SCREEN: Mutex<Option<MultiProgress>> = Mutex::new(None);
+static VISIBLE_BARS: Mutex<Option<MultiProgress>> = Mutex::new(None);
 
-pub(super) fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
-    ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
+pub(super) fn lock_visible_bars() -> MutexGuard<'static, Option<MultiProgress>> {
+    VISIBLE_BARS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Writes to standard error, above the progress bars. Its own errors cannot be reported.
 pub(super) fn write_above_bars(text: &[u8]) {
     let write = || drop(io::stderr().lock().write_all(text));
-    match &*on_screen() {
+    match &*lock_visible_bars() {
         Some(bars) => bars.suspend(write),
         None => write(),
     }
@@ -23,7 +23,7 @@ pub(super) fn write_above_bars(text: &[u8]) {
 
 /// Removes the progress bars.
 pub(super) fn clear_bars() {
-    if let Some(bars) = on_screen().take() {
+    if let Some(bars) = lock_visible_bars().take() {
         drop(bars.clear());
         // Another thread may have drawn the bars in the meantime. From here on, no thread can draw, and what was drawn
         // last is removed.

@@ -1,5 +1,5 @@
 //! Selects the finding that a check shows first.
-use super::{Check, follows::is_of_later_pass};
+use super::{Check, consequences::is_in_later_pass};
 use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;
 
@@ -15,6 +15,6 @@ pub(crate) fn is_other_scene(check: &Check<'_>) -> bool {
 pub(crate) fn find_first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
     let fair = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
     let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(fair)?;
-    let cause = fair.filter(|fair| fair.step == first.step && is_of_later_pass(first));
+    let cause = fair.filter(|fair| fair.step == first.step && is_in_later_pass(first));
     Some(cause.unwrap_or(first)).filter(|_| !is_other_scene(check))
 }

@@ -1,11 +1,11 @@
 //! Commands with which a reader sees more of the first fault.
-use super::{Check, first};
-use crate::{describe::pair_key, foreign::quote};
+use super::{Check, first_finding};
+use crate::{describe::pair_key, untrusted_text::quote};
 
 /// Returns the commands in a form that can be typed. There are none if the trace is right, or if it came from standard
 /// input and can't be read again.
 pub(super) fn list_commands(check: &Check<'_>) -> Vec<String> {
-    let Some(first) = first::find_first(check).filter(|_| check.trace != "-") else { return Vec::new() };
+    let Some(first) = first_finding::find_first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quote(check.scene), quote(check.trace), first.step);
     let mut commands = Vec::new();
     if let (Some(pair), 1..) = (first.detail.pair().map(pair_key), step) {

@@ -45,10 +45,10 @@ fn render_problem(name: &str, source: &[u8], problem: &Problem) -> String {
     let start = span.start.min(source.len());
     let from = start.saturating_sub(MAX_SHOWN_BYTES);
     let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
-    let end = span.end.clamp(start, line_end(source, start));
+    let end = span.end.clamp(start, find_line_end(source, start));
     let before = escape_line(&source[line_start..start]);
     let marked = escape_line(&source[start..end]);
-    let after = escape_line(&source[end..line_end(source, end)]);
+    let after = escape_line(&source[end..find_line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
         // In an empty file or line there is nothing to point at.
@@ -75,7 +75,7 @@ fn render_problem(name: &str, source: &[u8], problem: &Problem) -> String {
 }
 
 /// Returns the end of the line that contains the position `at`, or the end of the part that can be shown.
-fn line_end(source: &[u8], at: usize) -> usize {
+fn find_line_end(source: &[u8], at: usize) -> usize {
     let to = source.len().min(at + MAX_SHOWN_BYTES);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }

@@ -1,9 +1,9 @@
 //! Reports skipped entries of a class's folder in every format, so that no submission is missing without notice.
 use super::shorten_name;
 use crate::{
-    foreign::one_line,
-    style::{Look, Style},
+    style::{Style, TextStyle},
     table::{Align, Table},
+    untrusted_text::to_one_line,
 };
 use fosssim_findings::{Grade, SkippedEntry};
 
@@ -18,13 +18,13 @@ pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
 
 /// Returns the list of skipped entries that follows a class's table, for people.
 #[must_use]
-pub fn not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
+pub fn list_not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {
         return String::new();
     }
     let mut table = Table::new([Align::Left, Align::Left]);
     for SkippedEntry { name, reason: why } in passed_over {
-        table.row([shorten_name(&one_line(name)).into(), one_line(why).into()]);
+        table.row([shorten_name(&to_one_line(name)).into(), to_one_line(why).into()]);
     }
-    format!("{}\n{}", style.paint(Look::Strong, "Not graded"), table.render(style))
+    format!("{}\n{}", style.paint(TextStyle::Strong, "Not graded"), table.render(style))
 }

@@ -3,13 +3,13 @@
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
-    report::foreign::quote,
+    report::untrusted_text::quote,
     suite::{Grade, SceneGrade, Submission, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};
 
 /// The parts of the grading that the suggested commands repeat.
-pub(super) struct Closer<'a> {
+pub(super) struct FurtherCommands<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) plan: &'a Plan,
     pub(super) submissions: &'a [Submission],
@@ -17,9 +17,9 @@ pub(super) struct Closer<'a> {
     pub(super) trace: &'a dyn Fn(&str, &str) -> Option<PathBuf>,
 }
 
-impl Closer<'_> {
+impl FurtherCommands<'_> {
     /// Returns the suggested commands for a scene.
-    pub(super) fn advice(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
+    pub(super) fn list_commands(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
         let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
             return Vec::new();
         };
@@ -28,7 +28,7 @@ impl Closer<'_> {
         let hints = if self.plan.staff_hints < Hints::Full && of_trace { " --hints full" } else { "" };
         let alone = self.plan.scenes().count() == 1;
         if !alone || !hints.is_empty() {
-            lines.push(format!("$ {} --scene {}{hints}", self.command(submission), quote(&scene.scene)));
+            lines.push(format!("$ {} --scene {}{hints}", self.grade_command(submission), quote(&scene.scene)));
         }
         let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
         if let (Some(trace), Some(name)) = (kept, self.scene(&scene.scene)) {
@@ -43,7 +43,7 @@ impl Closer<'_> {
             lines.push(format!("if this program belongs to another milestone: --suite {}", others.join(", ")));
         }
         if wrong > 1 && wrong < grade.scenes().count() && !self.arguments.failed && self.submissions.len() == 1 {
-            lines.push(format!("$ {} --failed", self.command(submission)));
+            lines.push(format!("$ {} --failed", self.grade_command(submission)));
         }
         lines
     }
@@ -59,7 +59,7 @@ impl Closer<'_> {
     }
 
     /// Returns the command that grades this submission with the same options.
-    fn command(&self, submission: &Submission) -> String {
+    fn grade_command(&self, submission: &Submission) -> String {
         let Arguments { suite, rules, program, single, recorded, unsafe_no_sandbox, output, .. } = self.arguments;
         let path = match &submission.program {
             // The submission is an entry in a folder of programs.

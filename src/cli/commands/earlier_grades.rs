@@ -1,8 +1,8 @@
 //! The option `grade --compare`, which reads an earlier grading and compares its grades with the new ones.
 use crate::{
     cli::{console, input},
-    files::Place,
-    report::{foreign::strip_control_characters, number::format_count},
+    files::FilePlace,
+    report::{number::format_count, untrusted_text::strip_control_characters},
     suite::{EarlierGrade, Grade},
 };
 use anyhow::{Context, Result, bail};
@@ -27,7 +27,7 @@ struct GradesFile {
 ///
 /// Fails if the file can't be read, or contains no grade.
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
-    let file = if place.is_dir() { Place::new(place, FILE_NAME) } else { Place::new("", place) };
+    let file = if place.is_dir() { FilePlace::new(place, FILE_NAME) } else { FilePlace::new("", place) };
     let shown = input::printable_name(&file.path()).to_string();
     let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
@@ -46,7 +46,7 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
 
 /// Adds to each grade the earlier grade of the submission with the same name. If there is only one of each, the names
 /// do not matter.
-pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
+pub(super) fn add_earlier_grades(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
         grade.earlier_grade = Some(before.clone());
         return;

@@ -10,7 +10,7 @@ pub(crate) const PINK: &str = "\x1b[35;1m";
 
 /// Returns the line on standard error for a file, the `input` or the `output`, that cannot be opened
 /// (oracle-behavior.md 2).
-pub(crate) fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
+pub(crate) fn open_failure(which: &str, name: &[u8]) -> Vec<u8> {
     let start = format!("{RED}ERROR IN INITIALIZATION: {RESET}Failed to open binary {which} file:  `");
     [start.as_bytes(), name, b"`   Exiting.\n"].concat()
 }

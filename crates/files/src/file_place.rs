@@ -10,27 +10,31 @@ use std::{
 /// A file or a folder below a folder that a user named. The path to the folder may contain links; below it no link is
 /// followed, no matter who created it.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Place {
+pub struct FilePlace {
     folder: PathBuf,
-    below: PathBuf,
+    relative_path: PathBuf,
 }
 
-impl Place {
+impl FilePlace {
     /// Creates the place `below`, a path of names, in a folder. An empty folder means the working folder.
     pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
-        Self { folder: folder.into(), below: below.into() }
+        Self { folder: folder.into(), relative_path: below.into() }
     }
 
     /// Returns a place below this one.
     #[must_use]
     pub fn join(&self, name: impl AsRef<Path>) -> Self {
-        Self { folder: self.folder.clone(), below: self.below.join(name) }
+        Self { folder: self.folder.clone(), relative_path: self.relative_path.join(name) }
     }
 
     /// Returns the whole path, for messages and for other programs.
     #[must_use]
     pub fn path(&self) -> PathBuf {
-        if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
+        if self.relative_path.as_os_str().is_empty() {
+            self.folder.clone()
+        } else {
+            self.folder.join(&self.relative_path)
+        }
     }
 
     /// Opens the regular file at this place, and returns its length.
@@ -38,7 +42,7 @@ impl Place {
     /// # Errors
     /// Fails like [`Folder::open_file`].
     pub fn open_file(&self, most: u64) -> Result<(File, u64), FileError> {
-        self.base().and_then(|folder| folder.open_file(self.below.as_os_str(), most))
+        self.base().and_then(|folder| folder.open_file(self.relative_path.as_os_str(), most))
     }
 
     /// Returns the contents of the regular file at this place.
@@ -46,13 +50,13 @@ impl Place {
     /// # Errors
     /// Fails like [`Folder::read`].
     pub fn read(&self, most: u64) -> Result<Vec<u8>, FileError> {
-        self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
+        self.base().and_then(|folder| folder.read(self.relative_path.as_os_str(), most))
     }
 
     /// Returns whether there is a regular file at this place.
     #[must_use]
     pub fn is_file(&self) -> bool {
-        self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
+        self.base().is_ok_and(|folder| folder.identity(self.relative_path.as_os_str()).is_some())
     }
 
     /// Opens the folder at this place. Missing folders on the path, and the folder itself, are created.
@@ -60,8 +64,8 @@ impl Place {
     /// # Errors
     /// Fails if a folder cannot be created, or if an entry of another kind (such as a link) has its name.
     pub fn make_folder(&self) -> io::Result<Folder> {
-        self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
-            let inner = folder.make_folder(name);
+        self.relative_path.iter().try_fold(Folder::create(self.start())?, |folder, name| {
+            let inner = folder.create_folder(name);
             inner.map_err(|error| with_name(&folder.given_path().join(name), &error))
         })
     }
@@ -71,8 +75,8 @@ impl Place {
     /// # Errors
     /// Fails like [`Place::make_folder`]. Also fails if no file can be created there.
     pub fn replacement(&self) -> io::Result<Replacement> {
-        let above = Self::new(&self.folder, self.below.parent().unwrap_or(Path::new("")));
-        above.make_folder()?.replacement(self.below.file_name().unwrap_or_default(), None)
+        let above = Self::new(&self.folder, self.relative_path.parent().unwrap_or(Path::new("")));
+        above.make_folder()?.replacement(self.relative_path.file_name().unwrap_or_default(), None)
     }
 
     /// Writes a file. It appears only when it is complete. Missing folders on the path are created.
@@ -90,9 +94,9 @@ impl Place {
     /// # Errors
     /// Fails if the entry cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
-        let above = self.below.parent().unwrap_or(Path::new(""));
+        let above = self.relative_path.parent().unwrap_or(Path::new(""));
         match self.base().and_then(|folder| folder.open_path(above)) {
-            Ok(folder) => folder.remove(self.below.file_name().unwrap_or_default()),
+            Ok(folder) => folder.remove(self.relative_path.file_name().unwrap_or_default()),
             Err(FileError::Missing { .. }) => Ok(()),
             Err(error) => Err(io::Error::other(error)),
         }
@@ -115,7 +119,7 @@ impl Place {
     /// # Errors
     /// Fails if the folder does not exist, or is reached by a link.
     pub fn open_folder(&self) -> Result<Folder, FileError> {
-        self.base().and_then(|folder| folder.open_path(&self.below))
+        self.base().and_then(|folder| folder.open_path(&self.relative_path))
     }
 
     fn start(&self) -> &Path {
@@ -123,7 +127,8 @@ impl Place {
     }
 
     fn base(&self) -> Result<Folder, FileError> {
-        Folder::to_write(self.start()).map_err(|error| FileError::not_opened(escape(self.folder.as_os_str()), error))
+        Folder::open_to_write(self.start())
+            .map_err(|error| FileError::from_open_error(escape(self.folder.as_os_str()), error))
     }
 }
 

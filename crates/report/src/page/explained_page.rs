@@ -2,7 +2,7 @@
 use super::{
     Card,
     case::mistakes,
-    graded::{self, scene_key},
+    grade_page::{self, scene_key},
     render_document, render_template, script, smallest,
 };
 use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first};
@@ -102,6 +102,6 @@ impl ExplainedContent<'_> {
 }
 
 /// Renders a mistake that explains several traces.
-fn mistakes_of(one: &Explanation) -> String {
+fn render_mistake(one: &Explanation) -> String {
     mistakes(std::slice::from_ref(one), false)
 }

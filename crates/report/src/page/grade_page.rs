@@ -1,18 +1,17 @@
 //! The page of one submission, with its points, its likely mistakes, and a card for each scene.
 use super::{
     Card,
+    card_details::{self, CardDetail, OUTPUT_BUDGET},
     case::mistakes,
     markup::{count_scenes, note, text},
-    render_document, render_template,
-    room::{self, OUTPUT_BUDGET, Room},
-    script, smallest,
+    render_document, render_template, script, smallest,
 };
-use crate::foreign::{one_line, without_codes};
+use crate::untrusted_text::{remove_escape_codes, to_one_line};
 use crate::{
     grade::{
-        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_likely, describe_speed,
-        describe_worth, detail_likely, extra, find_likely_mistakes, format_optional_points, format_points,
-        format_score, head_likely, is_listed, no_points,
+        change_lines, clearest_scene, count_wrong, describe_difference, describe_extra_points, describe_likely,
+        describe_missing_points, describe_speed, describe_worth, detail_likely, find_likely_mistakes,
+        format_optional_points, format_points, format_score, group_by_cause, head_likely, is_listed,
     },
     number::format_count,
     words::{self, explanation::capitalize},
@@ -61,7 +60,7 @@ impl GradePage<'_> {
             Audience::Staff => Cow::Borrowed(self.grade),
         };
         let grade = shown.as_ref();
-        let causes = by_cause(grade);
+        let causes = group_by_cause(grade);
         let told: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let tells_who =
             self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
@@ -69,7 +68,7 @@ impl GradePage<'_> {
         let content = GradeContent {
             page: self,
             grade,
-            rooms: room::distribute(told.iter().map(|(_, card)| card.as_ref())),
+            rooms: card_details::distribute(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.submission_fault().is_none(),
             has_groups: grade.submission_fault().is_none() || grade.points > Some(0.0),
             is_accepted,
@@ -93,7 +92,7 @@ struct GradeContent<'a> {
     grade: &'a Grade,
     /// The listed scenes, ordered by cause. Each has the parts of its card that fit on the page.
     told: Vec<(&'a SceneGrade, Option<Card>)>,
-    rooms: Vec<Room>,
+    rooms: Vec<CardDetail>,
     /// The number of scenes with each cause, in the same order.
     alike: Vec<usize>,
     has_scenes: bool,
@@ -131,7 +130,7 @@ impl GradeContent<'_> {
     }
 
     /// Returns the first scene of a group that the page lists.
-    fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
+    fn first_listed_scene(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         self.told.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
     }
@@ -144,7 +143,7 @@ impl GradeContent<'_> {
     }
 
     /// Returns the cards of the listed scenes.
-    fn told_cards(&self) -> impl Iterator<Item = Option<&Card>> {
+    fn shown_cards(&self) -> impl Iterator<Item = Option<&Card>> {
         self.told.iter().map(|(_, card)| card.as_ref())
     }
 
@@ -157,7 +156,7 @@ impl GradeContent<'_> {
     }
 
     /// Returns the scenes that are not listed, and how many of them are accepted.
-    fn rest(&self) -> (usize, Vec<&SceneGrade>) {
+    fn unlisted_scenes(&self) -> (usize, Vec<&SceneGrade>) {
         let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_listed(scene)).collect();
         (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
@@ -165,12 +164,12 @@ impl GradeContent<'_> {
 
 /// Renders a scene's name, which may be broken after a slash.
 fn break_at_slashes(name: &str) -> String {
-    text(&one_line(name)).replace('/', "/<wbr>")
+    text(&to_one_line(name)).replace('/', "/<wbr>")
 }
 
 /// Describes as HTML what the scenes in which a program fails have in common.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
-    let words = text(&one_line(&words::describe_located(found)));
+    let words = text(&to_one_line(&words::describe_located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
@@ -187,15 +186,15 @@ fn describe_books(grade: &Grade) -> String {
 }
 
 /// Describes the points of a grade, or why there are none.
-fn score_or_why(grade: &Grade) -> String {
+fn describe_score(grade: &Grade) -> String {
     match grade.points {
-        Some(reached) => format_score(reached, grade.max_points) + &extra(grade),
-        None => no_points(grade).unwrap_or_default(),
+        Some(reached) => format_score(reached, grade.max_points) + &describe_extra_points(grade),
+        None => describe_missing_points(grade).unwrap_or_default(),
     }
 }
 
 /// Renders the output of a build.
-fn printed_by(build: &Build) -> String {
+fn build_output(build: &Build) -> String {
     render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
 }
 
@@ -210,29 +209,31 @@ const fn describe_readers(visibility: Visibility) -> &'static str {
 }
 
 /// Returns the number of a group's scenes that are accepted.
-fn accepted_of(group: &GroupGrade) -> usize {
+fn count_accepted(group: &GroupGrade) -> usize {
     group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count()
 }
 
 impl<'a> Article<'a> {
     /// Creates the part of the page about a scene. Its card is reduced to what fits, and its output to the remaining
     /// space.
-    fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
+    fn new(scene: &'a SceneGrade, card: Option<&Card>, room: CardDetail, room_of_outputs: &mut usize) -> Self {
         let key = scene_key(&scene.scene);
         // A detail is left out if the card already shows it together with the values.
-        let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
+        let is_shown = room != CardDetail::Words && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.corrected_explanations, is_shown);
         let no_room = |what: &str| format!("<p class=\"hint\">This page has no space for {what}.</p>\n");
         let shown = match (card, room) {
             (None, _) => mistakes,
-            (Some(card), Room::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
-            (Some(card), Room::Pictures) if card.sizes().1 > 0 => no_room("the motion") + &card.html(&key, &mistakes),
+            (Some(card), CardDetail::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
+            (Some(card), CardDetail::Pictures) if card.sizes().1 > 0 => {
+                no_room("the motion") + &card.html(&key, &mistakes)
+            }
             (Some(card), _) => card.html(&key, &mistakes),
         };
         let motion = match (card, room) {
-            (Some(card), Room::Exact) => card.data(&key),
-            (Some(card), Room::Rounded) => card.round_motions(&key),
+            (Some(card), CardDetail::Exact) => card.data(&key),
+            (Some(card), CardDetail::Rounded) => card.round_motions(&key),
             _ => String::new(),
         };
         let outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
@@ -252,7 +253,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }
-    let output = without_codes(output);
+    let output = remove_escape_codes(output);
     let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
     // The length is measured after escaping, which makes hostile text longer.

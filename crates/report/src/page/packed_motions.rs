@@ -28,7 +28,7 @@ const NO_UNIT_MARK: i64 = 1 << 40;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
     /// Motions are exact if there is space for them; otherwise they are rounded.
-    AsRoomAllows,
+    Budgeted,
     /// Motions are rounded in any case.
     Rounded,
 }
@@ -52,13 +52,14 @@ pub(super) struct PackedMotions {
 impl PackedMotions {
     pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
-        if precision == Precision::AsRoomAllows && raw <= MAX_COMPRESSED_BYTES {
+        if precision == Precision::Budgeted && raw <= MAX_COMPRESSED_BYTES {
             let blocks: Vec<String> = tracks.iter().map(|(_, track)| encode_base64(&bytes(&track.values))).collect();
             if blocks.iter().map(String::len).sum::<usize>() <= MAX_EXACT_BYTES {
                 return Self { blocks, rounded: None };
             }
         }
-        let rounded = Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact(evidence) };
+        let rounded =
+            Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact_records(evidence) };
         let blocks = tracks
             .iter()
             .map(|(_, track)| encode_base64(&round_track(track, evidence.layout.particles, &rounded)))
@@ -91,7 +92,7 @@ fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
 }
 
 /// Returns the indices of the records around steps with details. Those around the first wrong steps come first.
-fn exact(evidence: &Evidence) -> Vec<usize> {
+fn exact_records(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = MAX_EXACT_VALUES / (4 * layout.particles).max(1);
     let per_step = layout.records_per_step() as usize;
@@ -157,10 +158,10 @@ mod tests {
     #[test]
     fn motions_are_exact_within_the_budget() {
         let small = evidence(11, 400, |k| (k as f64).sin());
-        assert!(pack(&small, Precision::AsRoomAllows).rounded.is_none());
+        assert!(pack(&small, Precision::Budgeted).rounded.is_none());
         // Noise can't be packed.
         let large = evidence(200, 400, |k| (k as f64 * 12.9898).sin() * 43758.5453 % 1.0);
-        let rounded = pack(&large, Precision::AsRoomAllows);
+        let rounded = pack(&large, Precision::Budgeted);
         assert!(rounded.rounded.is_some());
         assert!(pack(&small, Precision::Rounded).rounded.is_some());
     }

@@ -20,13 +20,13 @@ pub(super) fn exit_code(grades: &[Grade]) -> u8 {
 }
 
 /// Returns the file name for a scene.
-pub(super) fn file_of_scene(name: &str) -> String {
-    file_name(&name.replace('/', "_"))
+pub(super) fn scene_file_name(name: &str) -> String {
+    to_file_name(&name.replace('/', "_"))
 }
 
 /// Returns the file name for any name. It has no separators and no leading dot, it is not too long, and different names
 /// have different file names.
-pub(super) fn file_name(name: &str) -> String {
+pub(super) fn to_file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
     // Names that look like an option, or that Windows reserves, are changed.
@@ -66,23 +66,23 @@ pub(super) fn text(
     closer: Option<Advice<'_>>,
 ) -> String {
     let (style, width) = (console::style(), console::width());
-    let mut text = Text { style, shown, width, closer }.render(grades);
+    let mut text = Text { style, detail: shown, width, advice: closer }.render(grades);
     if grades.len() > 1 && shown > TextDetail::Line {
         text += "\n";
         text += &grade::render_class(grades, hardest, style);
     }
-    text + &grade::not_graded(grades, passed_over, style)
+    text + &grade::list_not_graded(grades, passed_over, style)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{file_name, file_of_scene};
+    use super::{scene_file_name, to_file_name};
     use std::collections::BTreeSet;
 
     #[test]
     fn a_file_has_a_name_that_every_system_takes_and_no_other_has() {
-        assert_eq!(file_name("smith-12345678"), "smith-12345678");
-        assert_eq!(file_of_scene("Group/scene 1"), "Group_scene 1");
+        assert_eq!(to_file_name("smith-12345678"), "smith-12345678");
+        assert_eq!(scene_file_name("Group/scene 1"), "Group_scene 1");
         let names = [
             "alice",
             "alice\\r",
@@ -105,7 +105,7 @@ mod tests {
             "\u{e9}",
             "e\\u{301}",
             "Zo\u{eb}",
-            &file_name("Zo\u{eb}"),
+            &to_file_name("Zo\u{eb}"),
             "a/b",
             "a_b",
             "~",
@@ -113,7 +113,7 @@ mod tests {
         ]
         .map(str::to_owned);
         let long = ["x".repeat(255), "\u{754c}".repeat(180), "x".repeat(101)];
-        let files: BTreeSet<String> = names.iter().chain(&long).map(|name| file_name(name)).collect();
+        let files: BTreeSet<String> = names.iter().chain(&long).map(|name| to_file_name(name)).collect();
         assert_eq!(files.len(), names.len() + long.len(), "{files:?}");
         for file in &files {
             assert!(file.len() < 120 && !file.starts_with(['-', '.']) && !file.ends_with(['.', ' ']), "{file}");

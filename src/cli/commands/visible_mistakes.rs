@@ -16,23 +16,23 @@ const MAX_PARTICLES: usize = 2_000;
 
 /// An area of the assignment, and which of its mistakes the scenes show.
 #[derive(Debug)]
-pub(super) struct SeenPart {
+pub(super) struct VisibleMistakes {
     /// The area of the assignment.
     pub(super) area: Area,
     /// The number of mistakes in the area that a scene of the suite could show.
-    pub(super) all: usize,
+    pub(super) mistake_count: usize,
     /// The mistakes that no scene shows: on every scene, the sample program writes the same trace with and without the
     /// mistake.
-    pub(super) unseen: Vec<&'static str>,
+    pub(super) invisible_mistakes: Vec<&'static str>,
     /// The mistakes that fewer than [`MAX_LISTED_SCENES`] scenes show. A small change of one scene could hide them.
-    pub(super) rare: Vec<&'static str>,
+    pub(super) rarely_visible: Vec<&'static str>,
 }
 
 /// The number of scenes that are enough to show a mistake reliably.
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
 /// Returns the areas of the assignment, in the order of the catalogue.
-pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
+pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
     let written = |scene: &Scene, student: Student| {
         student::record_limited_trace(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
@@ -56,20 +56,25 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
             showing.take(MAX_LISTED_SCENES).count()
         })
         .collect();
-    let mut parts: Vec<SeenPart> = Vec::new();
+    let mut parts: Vec<VisibleMistakes> = Vec::new();
     for (row, seen) in rows.iter().zip(seen) {
         if seen == 0 && !concerns(row) {
             continue;
         }
         let place = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
-            parts.push(SeenPart { area: row.area, all: 0, unseen: Vec::new(), rare: Vec::new() });
+            parts.push(VisibleMistakes {
+                area: row.area,
+                mistake_count: 0,
+                invisible_mistakes: Vec::new(),
+                rarely_visible: Vec::new(),
+            });
             parts.len() - 1
         });
-        parts[place].all += 1;
+        parts[place].mistake_count += 1;
         match seen {
-            0 => parts[place].unseen.push(row.id),
+            0 => parts[place].invisible_mistakes.push(row.id),
             MAX_LISTED_SCENES.. => {}
-            _ => parts[place].rare.push(row.id),
+            _ => parts[place].rarely_visible.push(row.id),
         }
     }
     parts

@@ -46,7 +46,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     let of_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|one| one.description.as_str()).collect();
-        let told = format!("{} {names} are {}", fault.share, happens(fault.times));
+        let told = format!("{} {names} are {}", fault.share, describe_times(fault.times));
         if common.is_empty() {
             return told;
         }
@@ -63,8 +63,12 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     let of_fault = |fault: &PairFault<'_>| {
         let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.counts_by_times[times]).sum::<u64>();
         let (wrong, right) = (sum(fault.times), sum(1));
-        let numbers =
-            format!("Pairs that are {}: {}. Reported once: {}.", happens(fault.times), count(wrong), count(right));
+        let numbers = format!(
+            "Pairs that are {}: {}. Reported once: {}.",
+            describe_times(fault.times),
+            count(wrong),
+            count(right)
+        );
         let traits = fault.traits.iter().map(|one| {
             let others = format_count(right, "other");
             format!("{}: also in {} of {others}.", one.exact_condition, count(one.right_pairs))
@@ -74,7 +78,7 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     first.into_iter().chain(faults(wrong).iter().flat_map(of_fault)).collect()
 }
 
-const fn happens(times: usize) -> &'static str {
+const fn describe_times(times: usize) -> &'static str {
     if times == 0 { "missing" } else { "reported twice" }
 }
 

@@ -1,5 +1,5 @@
 //! The page about a trace that was just judged.
-use super::{Case, WhatIf};
+use super::{Case, MistakeRun};
 use crate::{check::Check, words::explanation};
 use fosssim_evidence::{Evidence, ExaminedTrace, Track};
 use fosssim_findings::Hints;
@@ -7,7 +7,7 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::scene::Scene;
 use fosssim_student::{self as student};
 
-impl WhatIf {
+impl MistakeRun {
     /// Simulates the reference with the named mistake, to compare it with the trace. Returns `None` if the mistake
     /// reproduces no step, if the trace was not kept completely, or if the evidence does not contain the whole motion.
     #[must_use]
@@ -30,8 +30,8 @@ impl WhatIf {
 pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;
     let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.trace.bytes());
-    let what_if = check.explanations.first().and_then(|first| WhatIf::for_scene(scene, first, trace, evidence));
+    let what_if = check.explanations.first().and_then(|first| MistakeRun::for_scene(scene, first, trace, evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
-    Case { check, scene, evidence, what_if, hints: Hints::Full, has_trace: true }.page(&title)
+    Case { check, scene, evidence, mistake_run: what_if, hints: Hints::Full, has_trace: true }.page(&title)
 }

@@ -5,7 +5,7 @@ use fosssim_model::sim::StepError;
 
 /// Returns whether there is something to explain: whether the fair rules reject the trace.
 #[must_use]
-pub fn is_wrong(outcome: &Outcome) -> bool {
+pub fn needs_explanation(outcome: &Outcome) -> bool {
     match &outcome.fair {
         Some(fair) => fair.verdict == FairVerdict::Rejected,
         None => outcome.parity.overall != Overall::Passed,

@@ -6,7 +6,7 @@ use std::borrow::Cow;
 /// Removes the terminal codes for colors, cursors and titles, which every line of FOSSSim's log contains. Only complete
 /// codes are removed, so that incomplete ones become visible.
 #[must_use]
-pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
+pub(crate) fn remove_escape_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
     if !text.contains(ESCAPE) {
         return Cow::Borrowed(text);
@@ -16,7 +16,7 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     while let Some(at) = rest.find(ESCAPE) {
         out.push_str(&rest[..at]);
         let code = &rest[at + 1..];
-        match length_of_code(code) {
+        match escape_code_length(code) {
             Some(length) => rest = &code[length..],
             None => {
                 out.push(ESCAPE);
@@ -29,7 +29,7 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
 
 /// Returns the length in bytes of the code that follows an escape character, such as `[32;1m`, or `]0;title` and its
 /// end (ECMA-48, 5.4 and 5.6).
-fn length_of_code(code: &str) -> Option<usize> {
+fn escape_code_length(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {
         b'[' => {
@@ -52,7 +52,7 @@ fn length_of_code(code: &str) -> Option<usize> {
 /// [`strip_control_characters`] does. In names, codes are not removed, because two names could then look the same.
 #[must_use]
 pub fn clean_output(text: &str) -> String {
-    strip_control_characters(&without_codes(text))
+    strip_control_characters(&remove_escape_codes(text))
 }
 
 /// Quotes a word for a shell, if necessary.
@@ -67,7 +67,7 @@ pub fn quote(word: &str) -> String {
 
 /// Returns whether a character cannot be seen. It either changes the direction of text, which could reorder a report,
 /// or it has no width, which could make two names look alike.
-pub(crate) const fn is_unseen(c: char) -> bool {
+pub(crate) const fn is_invisible(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
@@ -86,7 +86,7 @@ pub fn strip_control_characters(text: &str) -> String {
             '\n' | '\t' => plain.push(c),
             '\r' => {}
             '\u{fffe}' | '\u{ffff}' => plain.push('\u{fffd}'),
-            c if is_unseen(c) => plain.push('\u{fffd}'),
+            c if is_invisible(c) => plain.push('\u{fffd}'),
             c if c.is_control() => plain.push_str(&format!("\\x{:02x}", u32::from(c))),
             c => plain.push(c),
         }
@@ -96,7 +96,7 @@ pub fn strip_control_characters(text: &str) -> String {
 
 /// Returns the text of [`strip_control_characters`] as a single line.
 #[must_use]
-pub fn one_line(text: &str) -> String {
+pub fn to_one_line(text: &str) -> String {
     strip_control_characters(text).replace(['\n', '\t'], " ")
 }
 
@@ -117,7 +117,7 @@ mod tests {
         for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
             assert_eq!(strip_control_characters(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
         }
-        assert_eq!(one_line("a\nb"), "a b");
+        assert_eq!(to_one_line("a\nb"), "a b");
         for c in (0..128_u8).map(char::from) {
             assert_eq!(
                 strip_control_characters(&format!("a{c}b")) + "\u{e9}",

@@ -34,7 +34,7 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
         return None;
     }
     let mut cells = vec![0_u8; tall * wide];
-    let mut above: Vec<u32> = (0..=wide).map(|column| GAP_COST * count(column)).collect();
+    let mut above: Vec<u32> = (0..=wide).map(|column| GAP_COST * place_cost(column)).collect();
     for row in 0..tall {
         let mut corner = above[0];
         above[0] += GAP_COST;
@@ -64,7 +64,7 @@ const MATCH: u8 = 0;
 const DELETE: u8 = 1;
 const INSERT: u8 = 2;
 
-fn count(places: usize) -> u32 {
+fn place_cost(places: usize) -> u32 {
     u32::try_from(places).unwrap_or(u32::MAX / GAP_COST)
 }
 

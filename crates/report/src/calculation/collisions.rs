@@ -28,14 +28,14 @@ pub(super) struct CollisionWalk<'a> {
     /// The positions at the start of the step.
     start: Vec<f64>,
     /// The end positions that the last pass or collision used. For `simple` handling, also the end velocities.
-    seen: State,
+    observed_state: State,
 }
 
 impl<'a> CollisionWalk<'a> {
     /// Creates the description of a scene's first step.
     pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
         let start = State::for_scene(scene).positions;
-        Self { scene, pair, text: String::new(), start, seen: State::default() }
+        Self { scene, pair, text: String::new(), start, observed_state: State::default() }
     }
 
     /// Returns the description; `None` if the scene has no collision handling.
@@ -44,7 +44,7 @@ impl<'a> CollisionWalk<'a> {
     }
 
     fn shift(&self, particle: usize) -> Vec2 {
-        vector_at(&self.seen.positions, particle) - vector_at(&self.start, particle)
+        vector_at(&self.observed_state.positions, particle) - vector_at(&self.start, particle)
     }
 
     /// Renders the detection of a pair; `None` if its computation has no result.
@@ -69,7 +69,7 @@ impl Observer for CollisionWalk<'_> {
     }
 
     fn observe_positions(&mut self, _: &[f64], q_end: &[f64]) {
-        self.seen.positions = q_end.to_vec();
+        self.observed_state.positions = q_end.to_vec();
     }
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
@@ -79,7 +79,8 @@ impl Observer for CollisionWalk<'_> {
             self.pair = None;
         }
         if let Decision::Hit { time, normal } = decision {
-            self.seen = State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
+            self.observed_state =
+                State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
             let when =
                 if pass.stage == Stage::Simple { String::new() } else { format!(" at t = {}", format_short(time)) };
             self.text += &format!("  {} collide{when} with n = {}\n", PairText(pair), format_vector(normal));
@@ -105,7 +106,7 @@ impl Observer for CollisionWalk<'_> {
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[second];
                 let place = |particle: usize| match is_simple {
-                    true => vector_at(&self.seen.positions, particle),
+                    true => vector_at(&self.observed_state.positions, particle),
                     false => vector_at(&self.start, particle) + time * self.shift(particle),
                 };
                 let [y1, y2, y3] = [first, edge.first, edge.second].map(place);
@@ -115,7 +116,7 @@ impl Observer for CollisionWalk<'_> {
             }
         };
         let speed = |particle: usize| match is_simple {
-            true => vector_at(&self.seen.velocities, particle),
+            true => vector_at(&self.observed_state.velocities, particle),
             false => (1.0 / scene.time_step) * self.shift(particle),
         };
         let rate = |particle: usize| match &scene.particles[particle] {

@@ -13,26 +13,26 @@ const FORMULA_KINDS: [FindingKind; 6] = [
 ];
 
 /// Returns whether a finding of this kind may be a fault of a formula.
-pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
+pub(crate) fn is_formula_fault(kind: FindingKind) -> bool {
     FORMULA_KINDS.contains(&kind)
 }
 
 /// Returns whether the finding is about a formula in a pass whose input positions were computed by earlier passes of
 /// the same step.
-pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
-    is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
+pub(super) fn is_in_later_pass(finding: &Finding) -> bool {
+    is_formula_fault(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
 /// Counts the polynomials that are wrong by the original's rules only because positions are wrong. This requires that
 /// the fair rules, which start from the trace's own positions, reject the trace without finding a wrong formula. They
 /// must find wrong positions between the passes of a step; or they must find wrong states, and the first wrong formulas
 /// by the original's rules must all be in later passes. Otherwise the count is 0.
-pub(crate) fn count(outcome: &Outcome) -> u64 {
+pub(crate) fn count_consequences(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);
-    let examples = outcome.parity.findings.examples.iter().filter(|example| is_of_formula(example.kind()));
+    let examples = outcome.parity.findings.examples.iter().filter(|example| is_formula_fault(example.kind()));
     let has_states = charged(FindingKind::Position) + charged(FindingKind::Velocity) > 0;
-    let follow = charged(FindingKind::PassPositions) > 0 || has_states && { examples }.all(is_of_later_pass);
+    let follow = charged(FindingKind::PassPositions) > 0 || has_states && { examples }.all(is_in_later_pass);
     if !follow || FORMULA_KINDS.into_iter().any(|kind| charged(kind) > 0) {
         return 0;
     }
@@ -40,6 +40,6 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
 }
 
 /// Describes how many polynomials are wrong only because positions are wrong.
-pub(super) fn describe(follow: u64) -> String {
+pub(super) fn describe_consequences(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

@@ -12,7 +12,7 @@ const PICTURE_BUDGET: usize = PAGE_BUDGET / 3 * 2;
 
 /// The part of a scene's card that fits on the page. Each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Room {
+pub(super) enum CardDetail {
     /// Only the text fits.
     Words,
     /// The text and the pictures fit.
@@ -25,44 +25,44 @@ pub(super) enum Room {
 
 /// Decides for each card how much of it the page contains. Text is always included. Pictures are added in the order of
 /// the cards, then rounded motions, and then exact motions, again in the order of the cards.
-pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
+pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<CardDetail> {
     let count = cards.clone().count();
-    let mut rooms = vec![Room::Words; count];
+    let mut rooms = vec![CardDetail::Words; count];
     let mut left = PAGE_BUDGET - 2 * script().len() - OUTPUT_BUDGET - 1_000 * count.min(1_000);
     let mut still = PICTURE_BUDGET.min(left);
     for (card, room) in cards.clone().zip(&mut rooms) {
         let Some((html, _)) = card.map(Card::sizes) else { continue };
         if html <= still {
-            (still, left, *room) = (still - html, left - html, Room::Pictures);
+            (still, left, *room) = (still - html, left - html, CardDetail::Pictures);
         }
     }
-    for (card, room) in cards.clone().zip(&mut rooms).filter(|(_, room)| **room != Room::Words) {
+    for (card, room) in cards.clone().zip(&mut rooms).filter(|(_, room)| **room != CardDetail::Words) {
         let Some(card) = card else { continue };
         let (size, how) = match card.rounded_size() {
-            Some(size) => (size, Room::Rounded),
-            None => (card.sizes().1, Room::Exact),
+            Some(size) => (size, CardDetail::Rounded),
+            None => (card.sizes().1, CardDetail::Exact),
         };
         if size <= left {
             (left, *room) = (left - size, how);
         }
     }
-    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == Room::Rounded) {
+    for (card, room) in cards.zip(&mut rooms).filter(|(_, room)| **room == CardDetail::Rounded) {
         let Some((size, rounded)) = card.and_then(|card| Some((card.sizes().1, card.rounded_size()?))) else {
             continue;
         };
         if size <= left + rounded {
-            (left, *room) = (left + rounded - size, Room::Exact);
+            (left, *room) = (left + rounded - size, CardDetail::Exact);
         }
     }
     rooms
 }
 
 /// Describes which cards the page does not contain completely.
-pub(super) fn describe_left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
+pub(super) fn describe_omitted<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[CardDetail]) -> String {
     let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
-    let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();
-    let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures)).count();
-    let rounded = of.iter().filter(|room| **room == Room::Rounded).count();
+    let of: Vec<CardDetail> = with_motion.map(|(_, room)| *room).collect();
+    let without = of.iter().filter(|room| matches!(room, CardDetail::Words | CardDetail::Pictures)).count();
+    let rounded = of.iter().filter(|room| **room == CardDetail::Rounded).count();
     let scenes = |count: usize| if count == 1 { "one scene has".to_owned() } else { format!("{count} scenes have") };
     let mut says = Vec::new();
     if without > 0 {
@@ -91,10 +91,10 @@ mod tests {
         Card::from_stored(&kept.to_string()).expect("a card")
     }
 
-    fn rooms(cards: &[Card]) -> (Vec<Room>, String) {
+    fn rooms(cards: &[Card]) -> (Vec<CardDetail>, String) {
         let all = || cards.iter().map(Some);
         let rooms = distribute(all());
-        let says = describe_left_out(all(), &rooms);
+        let says = describe_omitted(all(), &rooms);
         (rooms, says)
     }
 
@@ -103,16 +103,19 @@ mod tests {
     #[test]
     fn motions_are_rounded_before_they_are_left_out() {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);
-        assert_eq!((&all[..], says.as_str()), (&[Room::Exact; 3][..], ""));
+        assert_eq!((&all[..], says.as_str()), (&[CardDetail::Exact; 3][..], ""));
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 10]);
         let count = |room| all.iter().filter(|one| **one == room).count();
-        assert!(count(Room::Exact) > 0 && count(Room::Rounded) > 0 && count(Room::Pictures) == 0, "{all:?}");
-        assert_eq!(all[0], Room::Exact);
+        assert!(
+            count(CardDetail::Exact) > 0 && count(CardDetail::Rounded) > 0 && count(CardDetail::Pictures) == 0,
+            "{all:?}"
+        );
+        assert_eq!(all[0], CardDetail::Exact);
         assert!(says.contains("scenes have a rounded motion") && !says.contains("no motion"), "{says}");
         let (all, says) = rooms(&vec![card(50_000, 500_000, 200_000); 30]);
-        assert!(all.contains(&Room::Rounded) && all.contains(&Room::Pictures), "{all:?}");
+        assert!(all.contains(&CardDetail::Rounded) && all.contains(&CardDetail::Pictures), "{all:?}");
         assert!(says.contains("scenes have no motion") && says.contains("rounded"), "{says}");
         let (all, _) = rooms(&vec![card(500_000, 10, 0); 30]);
-        assert_eq!(all.iter().filter(|room| **room == Room::Words).count(), 27);
+        assert_eq!(all.iter().filter(|room| **room == CardDetail::Words).count(), 27);
     }
 }
