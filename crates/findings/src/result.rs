@@ -215,9 +215,9 @@ pub enum Limit {
 /// The reason why a scene was not run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
-    /// Several scenes in a row exceeded a limit of time, memory or output.
+    /// Several scenes, in a row or four times as many in all, exceeded a limit of time, memory or output.
     Limits {
-        /// The number of consecutive scenes that exceeded a limit.
+        /// The number of these scenes.
         scenes: u32,
         /// The worst verdict of these scenes.
         verdict: Verdict,

@@ -144,7 +144,8 @@ impl Default for RunLimits {
 /// The limits after which the remaining scenes of a submission are skipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SkipLimits {
-    /// The number of consecutive scenes that may exceed a limit of time, memory or output. With 0 there is no limit.
+    /// The number of consecutive scenes that may exceed a limit of time, memory or output. Four times as many may
+    /// exceed it in all. With 0 there is no limit.
     pub time_outs: u32,
     /// The limit on the wall time of all runs of a submission together, which includes judging.
     pub total: Duration,

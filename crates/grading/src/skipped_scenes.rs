@@ -23,6 +23,10 @@ pub(super) fn skipped_result(task: &SceneTask, why: NotRunReason) -> SceneResult
     SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::Skipped(why))
 }
 
+/// A submission is skipped as well after this many times as many scenes at a limit as in a row. Each takes the whole
+/// limit, and a program that never ends in some scenes usually does not in many others.
+const SCATTERED: u32 = 4;
+
 /// Returns the first scene that is skipped, and the reason. `known` has the verdict and the duration of each finished
 /// scene.
 pub(super) fn find_first_skipped(
@@ -31,6 +35,7 @@ pub(super) fn find_first_skipped(
     known: &[Option<(Verdict, Duration)>],
 ) -> Option<(usize, NotRunReason)> {
     let (mut stopped, mut worst, mut total) = (0, Verdict::Accepted, Duration::ZERO);
+    let (mut scattered, mut worst_of_all) = (0, Verdict::Accepted);
     for (number, known) in known.iter().enumerate() {
         if total >= patience.total {
             return Some((number, NotRunReason::Total(patience.total)));
@@ -47,6 +52,12 @@ pub(super) fn find_first_skipped(
         };
         if stopped == patience.time_outs && stopped > 0 {
             return Some((number + 1, NotRunReason::Limits { scenes: stopped, verdict: worst }));
+        }
+        if is_limit(verdict) {
+            (scattered, worst_of_all) = (scattered + 1, worst_of_all.max(verdict));
+            if scattered == SCATTERED * patience.time_outs {
+                return Some((number + 1, NotRunReason::Limits { scenes: scattered, verdict: worst_of_all }));
+            }
         }
         if fail_fast && !matches!(verdict, Verdict::Accepted | Verdict::NotRun) {
             return Some((number + 1, NotRunReason::FailFast));
@@ -89,6 +100,18 @@ mod tests {
         assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(super::find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
+    }
+
+    #[test]
+    fn many_scenes_that_run_into_a_limit_are_the_end_even_with_others_between() {
+        let known: Vec<_> = (0..30).map(|number| if number % 2 == 0 { LARGE } else { WRONG }).collect();
+        let limits = NotRunReason::Limits { scenes: 12, verdict: Verdict::MemoryLimit };
+        assert_eq!(find_first_skipped(&PATIENCE, false, &known), Some((23, limits)));
+        assert_eq!(find_first_skipped(&PATIENCE, false, &known[..22]), None);
+        assert_eq!(find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &known), None);
+        // Scenes without a verdict yet cannot move the end backward.
+        let later: Vec<_> = known.iter().enumerate().map(|(number, one)| one.filter(|_| number != 0)).collect();
+        assert_eq!(find_first_skipped(&PATIENCE, false, &later), Some((25, limits)));
     }
 
     #[test]

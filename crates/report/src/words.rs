@@ -202,7 +202,7 @@ fn describe_left_out(why: NotRunReason) -> String {
             "not run: the preceding scene exceeded a limit of time, memory or output".to_owned()
         }
         NotRunReason::Limits { scenes, .. } => {
-            format!("not run: {scenes} preceding scenes in a row exceeded a limit of time, memory or output")
+            format!("not run: {scenes} preceding scenes exceeded a limit of time, memory or output")
         }
         NotRunReason::Total(total) => {
             let seconds = total.as_secs_f64();

@@ -62,6 +62,9 @@ fn is_stopped(world: &World, zone: &Zone) -> bool {
         () if student.makes(Mistake::FailsafeLastFixedOnly) => {
             zone.particles.last().is_some_and(|&last| world.is_fixed(last))
         }
+        () if student.makes(Mistake::FailsafeFixedCounter) => {
+            (0..zone.particles.len()).any(|number| world.is_fixed(number))
+        }
         () if student.makes(Mistake::FailsafeAllFixedOnly) => {
             zone.particles.iter().all(|&particle| world.is_fixed(particle))
         }

@@ -76,7 +76,7 @@ pub fn apply(
         rounds += if student.makes(Mistake::ImpulsesCountContacts) {
             i32::try_from(contacts.len()).unwrap_or(i32::MAX)
         } else {
-            1
+            1 + i32::from(student.makes(Mistake::ImpulsesCountTwice))
         };
     }
     if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {

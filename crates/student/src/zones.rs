@@ -33,6 +33,7 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
         }
         Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
+    half_plane ^= student.makes(Mistake::ZonesFlagInverted) && !matches!(contact.pair.object, Object::Edge(_));
     Zone { particles, half_plane }
 }
 

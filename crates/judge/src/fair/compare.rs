@@ -406,13 +406,12 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 /// round-off. `None` if it is round-off without a factor, or should be more, or has the size 1 to which some programs
 /// divide polynomials.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
-    let missing = expected.len().checked_sub(actual.len())?;
     let norm = bound_sum(expected);
     if !(norm > 0.0 && norm.is_finite()) || !is_round_off(expected) {
         return None;
     }
-    let share = |(r, s): (&BoundedValue, &f64)| s.abs() / (2.0 * UNIT_ROUNDOFF * allowed_units(r, norm));
-    let least = expected[missing..].iter().zip(actual).map(share).fold(0.0, f64::max);
+    // As much as counts as round-off of the expected polynomial, and the rounding errors of both sides.
+    let least = actual.iter().map(|s| s.abs()).sum::<f64>() / (DOUBLE_TOLERANCE * norm);
     let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let squares = actual.iter().map(|s| s * s).sum::<f64>();
     let is_one = |size: f64| (size - 1.0).abs() < 1e-9;

@@ -288,7 +288,7 @@ pub fn certain_decision(motion: &BoundedPairMotion, expected: &ExpectedPolynomia
         // With such extreme numbers no program is reliable, and proving certainty would take long.
         return None;
     }
-    let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
+    let units = if motion.is_exact(EXACT_BITS) && !motion.has_edge() { 0.0 } else { FAIR_UNITS };
     match decide(&polynomials[..expected.count()], units).certainty {
         HitCertainty::Hits => Some(true),
         HitCertainty::Misses => Some(false),
@@ -302,7 +302,12 @@ const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may change the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
-    certain_decision(motion, expected).is_none()
+    // An edge at rest leaves a parabola, and the submission's own polynomials are as exact.
+    let is_certain = || {
+        let is_exact = motion.has_edge() && motion.is_exact(EXACT_BITS);
+        is_exact && decide(&expected.polynomials()[..expected.count()], 0.0).certainty != HitCertainty::Borderline
+    };
+    certain_decision(motion, expected).is_none() && !is_certain()
 }
 
 /// Returns a time of impact for a pair whose collision is uncertain.

@@ -157,9 +157,14 @@ impl BoundedPairMotion {
         self
     }
 
+    /// Returns whether the second object is an edge.
+    pub const fn has_edge(&self) -> bool {
+        matches!(self, Self::Edge(..))
+    }
+
     /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power
-    /// of two, with factors below two to the power `bits`. Polynomials of a particle and an edge have higher degrees,
-    /// whose zeros are never exact.
+    /// of two, with factors below two to the power `bits`. Polynomials of a particle and a moving edge have higher
+    /// degrees, whose zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
         let parts = |v: BoundedVector| [v.x.value, v.y.value];
         match self {
@@ -171,7 +176,12 @@ impl BoundedPairMotion {
                 let [a, b] = [way.start, way.shift].map(parts);
                 are_short(&[a[0], a[1], b[0], b[1], point.x, point.y, q.x, q.y, radius.value], bits)
             }
-            Self::Edge(..) => false,
+            Self::Edge([one, ends @ ..], radii) => {
+                let inputs =
+                    ends.iter().flat_map(|end| parts(end.start)).chain(parts(one.start)).chain(parts(one.shift));
+                let inputs: Vec<f64> = inputs.chain([radii.value]).collect();
+                ends.iter().all(|end| parts(end.shift) == [0.0; 2]) && are_short(&inputs, bits)
+            }
         }
     }
 

@@ -89,10 +89,10 @@ struct Support<'a> {
 
 impl Support<'_> {
     /// Returns whether at least as many traces contradict a guess about polynomials as support it. A known formula is
-    /// tried on every trace, so half as many are enough.
+    /// tried on every trace, so an eighth is enough.
     fn is_denied(&self) -> bool {
         self.contradicting_traces > 0
-            && self.contradicting_traces * if self.is_known { 2 } else { 1 } >= self.complete_traces
+            && self.contradicting_traces * if self.is_known { 8 } else { 1 } >= self.complete_traces
     }
 
     /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent

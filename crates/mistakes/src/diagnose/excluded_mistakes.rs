@@ -1,10 +1,17 @@
 //! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
-    Explanation, joint_explanation::explain_together, known::mistake_is_visible_within, naming::alternative_statements,
-    non_finite::explain_source, sampling::Source, student_code::is_written_by_student, topic::ExplanationTopic,
+    Explanation,
+    explain::is_formula_area,
+    joint_explanation::{area_stage, explain_together},
+    known::{is_empty_stage, mistake_is_visible_within},
+    naming::alternative_statements,
+    non_finite::explain_source,
+    sampling::Source,
+    student_code::is_written_by_student,
+    topic::ExplanationTopic,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
-use fosssim_student::{Area, Student, find, record_limited_trace};
+use fosssim_student::{Area, Mistake, Student, find, record_limited_trace};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
@@ -40,9 +47,38 @@ fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explana
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
+/// A known mistake is contradicted by one trace for each this many traces that it explains.
+const NAMED_PER_CONTRADICTION: usize = 8;
+
+/// Returns whether traces contradict a mistake of a stage: the same stage is wrong in another way, although the mistake
+/// would show there, and no other known mistake explains it. A formula's own polynomials contradict it
+/// ([`evidence`](super::evidence)).
+fn is_contradicted(key: &str, wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
+    let Some(row) = find(key).filter(|row| !is_formula_area(row.area)) else { return false };
+    let (stage, is_of_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
+    if !is_of_state && (stage.is_none() || is_empty_stage(row)) {
+        return false;
+    }
+    let explains = |list: &[Explanation]| list.iter().any(|one| alternative_statements(one).get(key) == Some(&true));
+    let is_of_stage = |one: &Explanation| one.names_stage() && (stage.is_none() || one.stage() == stage);
+    let is_refuted = |one: &Explanation| {
+        find(&one.key).is_some_and(|row| refuted.contains(&one.key) && area_stage(row.area) == stage)
+    };
+    let is_other = |one: &Explanation| one.is_complete() && !is_refuted(one);
+    let is_open = |list: &[Explanation]| {
+        let is_wrong = |one: &Explanation| is_of_stage(one) || is_refuted(one) || one.key == key;
+        !explains(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
+    };
+    let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
+    let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
+    let work = Cell::new(0);
+    let against = wrong.iter().filter(|(scene, list)| is_open(list) && mistake_is_visible_within(scene, key, &work));
+    explained > 0 && against.take(needed).count() == needed
+}
+
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
-/// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
-/// them. In those scenes the program is right, although it would be wrong with the mistake
+/// program does not make: they are in code that a student of this milestone does not write, or other wrong scenes or
+/// right ones contradict them. In right scenes the program is right, although it would be wrong with the mistake
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.
@@ -63,7 +99,8 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
         // An explanation of unfinished work includes all its empty stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
-        match keys.find(|key| is_denied(key, &Cell::new(0))).cloned() {
+        let is_false = |key: &str| is_denied(key, &Cell::new(0)) || is_contradicted(key, wrong, &refuted);
+        match keys.find(|key| is_false(key)).cloned() {
             Some(key) => refuted.push(key),
             None => {
                 let work = Cell::new(0);

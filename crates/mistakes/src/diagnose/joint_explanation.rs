@@ -52,7 +52,7 @@ pub fn explain_together<'a>(
             is_confirmed(&open, &said)
         } else {
             (found.is_empty() && empty.is_empty())
-                || (next.is_exhaustive() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
+                || (next.is_exhaustive() && is_supported(&open, &next, &found) && !is_repetition(&found, &next, &open))
         };
         if is_told {
             remove_explained(&mut open, &said);
@@ -179,11 +179,15 @@ fn explain_wrong_polynomials(
         }
         _ => None,
     });
+    let is_known = |head: &Explanation| {
+        matches!(&head.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::Named(_)), .. })
+    };
     let heads = guesses
         .map(|guess| Explanation::for_wrong_polynomials(subjects.clone(), PolynomialEvidence::Guess(guess.clone())));
     let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
-        Some((named, head)) if named * 2 > most => Some(head),
+        // A known formula is tried on every trace, so few may deny it.
+        Some((named, head)) if most.saturating_sub(named) * if is_known(&head) { 8 } else { 2 } < most => Some(head),
         _ => Some(Explanation::for_wrong_polynomials(subjects, PolynomialEvidence::Nothing)),
     }
 }
@@ -278,7 +282,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
 }
 
 /// Returns the stage of a step in which mistakes of an area are made, or `None` for polynomials and for the trace.
-const fn area_stage(area: Area) -> Option<StepStage> {
+pub(super) const fn area_stage(area: Area) -> Option<StepStage> {
     match area {
         Area::Decision => Some(StepStage::Detection),
         Area::ContactVector => Some(StepStage::ContactVectors),
@@ -295,8 +299,9 @@ fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
 
 /// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
 /// addition to a reported mistake, or, if there are several traces, two others. Traces with a wrong stage count only if
-/// nothing explains them. A single symptom may follow from an earlier mistake, as missing polynomials do.
-fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
+/// nothing explains them. A single symptom may follow from an earlier mistake, as missing polynomials do. After a fault
+/// of a stage, whose mistake is unknown, and among many traces, a single trace may fit a known mistake by chance.
+fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
     let said = next.statement();
     let naming = |is_covered: bool| {
         open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&said)).count()
@@ -305,7 +310,10 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
         return naming(false) > 1 && !next.is_vague();
     }
     let is_partner = matches!(next.topic, ExplanationTopic::Mistake) && is_needed(next, open);
-    !next.reports_missing_polynomials() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
+    let is_formula = find(&next.key).is_none_or(|row| is_formula_area(row.area));
+    let may_be_chance = !is_formula && (open.len() >= MANY_TRACES || found.iter().any(Explanation::names_stage));
+    !next.reports_missing_polynomials()
+        && (naming(false) > usize::from(may_be_chance) || is_partner || naming(true) >= open.len().min(2))
 }
 
 /// Removes everything that a mistake explains. If the mistake explains a trace, only the trace's other complete

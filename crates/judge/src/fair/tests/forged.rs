@@ -116,6 +116,31 @@ impl StepController for Answer {
     }
 }
 
+/// A ball that strikes an edge at rest exactly at the end of the third step, in numbers with few digits: nothing is
+/// rounded, so that a missed collision is no borderline decision.
+#[test]
+fn an_impact_in_short_numbers_on_an_edge_at_rest_is_certain() {
+    let text = r#"<scene><duration time="1"/><integrator type="symplectic-euler" dt="0.25"/>
+        <collision type="continuous-time" COR="1"/>
+        <particle m="3" px="0" py="7" vx="0" vy="-4" fixed="0" radius="1.25"/>
+        <particle m="1" px="-1" py="2.5" vx="0" vy="0" fixed="1" radius="0.25"/>
+        <particle m="1" px="1" py="2.5" vx="0" vy="0" fixed="1" radius="0.25"/>
+        <edge i="1" j="2" radius="0.25"/></scene>"#;
+    struct Early;
+    impl StepController for Early {
+        fn adjust_decision(&mut self, _: Pair, decision: Decision) -> Decision {
+            match decision {
+                Decision::Hit { time, .. } if time >= 1.0 => Decision::Miss { time: ImpactTime::Found(time) },
+                other => other,
+            }
+        }
+    }
+    let scene = scene(text);
+    let early = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Early))));
+    assert_eq!(early.findings.counts.get(FindingKind::MissedCollision), 1, "{early:?}");
+    assert_eq!(fair(&scene, &write_frames(&scene, &simulate(&scene, ()))).verdict, FairVerdict::Accepted);
+}
+
 /// Whether the pair collides is borderline; with which normal and when is not.
 #[test]
 fn a_borderline_contact_is_where_and_when_it_has_to_be() {

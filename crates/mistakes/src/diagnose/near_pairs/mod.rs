@@ -96,8 +96,10 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
-        // The probability that as many randomly chosen pairs all have the trait.
-        let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
+        // The probability that as many randomly chosen pairs all have the trait. Pairs of a scene resemble each other,
+        // so the larger group counts only as much as the smaller one.
+        let chance: f64 =
+            (1..=(wrong - exceptions).min(right)).map(|i| (with + i) as f64 / (right + i) as f64).product();
         PAIRS_PER_EXCEPTION * exceptions <= wrong
             && 2 * with <= right
             && chance * (one.row.variant_count() as f64) < MAX_CHANCE_PROBABILITY

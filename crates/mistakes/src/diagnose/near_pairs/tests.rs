@@ -82,6 +82,18 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
     assert!(PairKind::ALL.iter().all(|kind| kinds.iter().any(|one| one.kind == *kind && one.counts_by_times[0] > 0)));
 }
 
+/// A trait is no cause if there are hardly any right pairs to compare with.
+#[test]
+fn a_trait_without_right_pairs_is_not_told() {
+    let traits_of = |[wrong, right, with]: [u64; 3]| {
+        let traits = vec![[wrong, with, 0]; traits::variants().count()];
+        pair_traits(&PairCounts { kind: PairKind::ParticleParticle, counts_by_times: [wrong, right, 0], traits }, 0)
+            .len()
+    };
+    assert_eq!(traits_of([196, 5, 0]), 0);
+    assert_ne!(traits_of([196, 40, 2]), 0);
+}
+
 #[test]
 fn no_trait_gives_a_formula_away() {
     for one in traits::variants() {

@@ -129,6 +129,12 @@ traits! {
         |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
     ANY_AXIS TRAIT_LENGTHS "a multiple of a round number is between the bodies {axis}"
         "A multiple of {n} is between their {axis}" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
+    ANY_AXIS TRAIT_LENGTHS
+        "a multiple of a round number except zero is between the bodies {axis}, as if decimals were cut off"
+        "The whole parts of their {axis} / {n} differ" |pair, axis, n| {
+            let [one, other] = pair.points().map(|point| (point[axis] / n).trunc());
+            one != other
+        };
     ANY_AXIS TRAIT_LENGTHS "the bodies begin in different cells of a grid with round borders {axis}"
         "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(corners(pair), axis, n, 0.0);
     ANY_AXIS TRAIT_FACTORS "a multiple of the largest diameter is between the bodies {axis}"

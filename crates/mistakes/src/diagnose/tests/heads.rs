@@ -3,11 +3,12 @@ use crate::{
     diagnose::is_named_in,
     diagnose::{
         Detail, Explanation, ExplanationTopic, Guess, ListGuess, NanStage, NonFiniteValue, PolynomialEvidence,
-        QuantityGuess, StageFault, WrongMotion, WrongVectors, correct_trace, explain_together,
+        QuantityGuess, StageFault, WrongMotion, WrongVectors, correct_trace, explain_together, mistake_is_visible,
+        refuted_keys,
     },
 };
-use fosssim_model::sim::PairKind;
-use fosssim_student::assignments::t2m2::Subject;
+use fosssim_model::{assignments::Assignment, scene::Scene, sim::PairKind};
+use fosssim_student::assignments::{probe_scenes, t2m2::Subject};
 
 fn statement(key: &str, about: ExplanationTopic, counts: (u64, u64), claims: &[&str]) -> Explanation {
     Explanation {
@@ -125,19 +126,60 @@ fn what_most_traces_speak_against_is_not_told() {
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
 }
 
-/// A known formula is tried on every trace: half as many that it does not reproduce deny it, even where no trace
+/// A known formula is tried on every trace: an eighth as many that it does not reproduce deny it, even where no trace
 /// reports it first.
 #[test]
-fn a_known_formula_is_denied_by_half_as_many_traces() {
+fn a_known_formula_is_denied_by_an_eighth_as_many_traces() {
     let both = ["ParticleOverlap/pp-one-radius/", "ParticleOverlap/pp-no-first-radius/"];
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push(both[1].to_owned());
     let mut traces = vec![vec![row("pp-one-radius", &both)]; 8];
     traces.push(vec![like]);
-    traces.extend(vec![vec![unexplained(Subject::ParticleOverlap)]; 4]);
+    traces.push(vec![unexplained(Subject::ParticleOverlap)]);
     assert_eq!(heads(&traces)[0], ("pp-no-first-radius".to_owned(), 9));
     traces.push(vec![unexplained(Subject::ParticleOverlap)]);
-    assert_eq!(heads(&traces), [("unexplained".to_owned(), 14)]);
+    assert_eq!(heads(&traces), [("unexplained".to_owned(), 11)]);
+}
+
+/// A formula that a few traces deny is not the head's guess either.
+#[test]
+fn the_guess_of_a_head_is_denied_by_an_eighth_as_many_traces() {
+    let found = PolynomialEvidence::Guess(Guess::Named("no-radius".into()));
+    let about = ExplanationTopic::Polynomials { subjects: vec![Subject::ParticleOverlap], found };
+    let named = statement("no-radius", about, (6, 6), &["ParticleOverlap/no-radius/"]);
+    let mut traces = vec![vec![named]; 9];
+    traces.extend(vec![vec![unexplained(Subject::ParticleOverlap)]; 3]);
+    assert_eq!(heads(&traces), [("unexplained".to_owned(), 12)]);
+}
+
+/// Where only the stage is known, or among many traces, one trace fits a known mistake by chance.
+#[test]
+fn a_known_mistake_of_one_trace_is_no_second_one() {
+    let behind = stage(StageFault::FirstRound);
+    let mut traces = vec![vec![behind]; 4];
+    traces.push(vec![row("loop-first-only", &[])]);
+    assert_eq!(heads(&traces).len(), 1, "{:?}", heads(&traces));
+}
+
+/// Wrong traces of the same stage contradict a mistake that would show in them: eight to one is too few.
+#[test]
+fn traces_of_the_same_stage_contradict_a_mistake() {
+    let scenes = probe_scenes(Assignment::T2M2);
+    let is_visible = |(_, scene): &&(String, Scene)| mistake_is_visible(scene, "zones-all-in-one");
+    let (_, scene) = scenes.iter().find(is_visible).expect("a scene with zones");
+    let named = vec![row("zones-all-in-one", &[])];
+    let fault = |fault| vec![stage(fault)];
+    let of_zones = fault(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: true });
+    let refuted = |named_in: usize, other: &[Explanation]| {
+        let wrong: Vec<(&Scene, &[Explanation])> =
+            std::iter::repeat_n((scene, &named[..]), named_in).chain([(scene, other)]).collect();
+        refuted_keys(None, &wrong, &[])
+    };
+    assert_eq!(refuted(8, &of_zones), ["zones-all-in-one"]);
+    assert!(refuted(9, &of_zones).is_empty());
+    assert!(refuted(3, &[row("failsafe-degrees", &[])]).is_empty(), "another mistake explains the trace");
+    let of_rounds = StageFault::FirstRound;
+    assert!(refuted(3, &fault(of_rounds)).is_empty(), "another stage");
 }
 
 /// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace

@@ -293,6 +293,7 @@ rows! {
         ImpulsesAlwaysTen "loop-always-ten";
         ImpulsesDouble "loop-double";
         ImpulsesCountContacts "loop-counts-contacts";
+        ImpulsesCountTwice "loop-counts-twice";
         ImpulsesDetectAfterLast "loop-detects-after-last";
         ImpulsesDetectBefore "loop-detects-before";
         ImpulsesTestBefore "loop-tests-before";
@@ -347,6 +348,7 @@ rows! {
         GeometricNewZonesOnly "geometric-new-zones-only";
         GeometricGrownStay "geometric-grown-stay";
         GeometricVelocitiesKept "geometric-velocities-kept";
+        GeometricHalfPlanesDropped "geometric-half-planes-dropped";
         ZonesOneEndpoint "zones-one-endpoint";
         ZonesOtherEndpoint "zones-other-endpoint";
         ZonesNextParticle "zones-next-particle";
@@ -359,6 +361,8 @@ rows! {
         ZonesJoinOneParticle "zones-join-one-particle";
         ZonesJoinTwoShared "zones-join-two-shared";
         ZonesNoHalfPlaneFlag "zones-no-flag";
+        ZonesFlagInverted "zones-flag-inverted";
+        ZonesFlagShared "zones-flag-shared";
         ZonesFlagLost "zones-flag-lost";
         ZonesFlagOverwritten "zones-flag-overwritten";
         ZonesFlagBoth "zones-flag-both";
@@ -412,6 +416,7 @@ rows! {
         FailsafeAllFixedOnly "failsafe-all-fixed-only";
         FailsafeFirstFixedOnly "failsafe-first-fixed-only";
         FailsafeLastFixedOnly "failsafe-last-fixed-only";
+        FailsafeFixedCounter "failsafe-fixed-counter";
         FailsafeAlwaysStops "failsafe-always-stops";
         FailsafeStopsFixedOnly "failsafe-stops-fixed-only";
         FailsafeStopKeepsPosition "failsafe-stop-keeps-position";
