@@ -73,7 +73,7 @@ impl FilePlace {
     /// Begins a file that appears at this place when it is finished. Missing folders on the path are created.
     ///
     /// # Errors
-    /// Fails like [`Place::make_folder`]. Also fails if no file can be created there.
+    /// Fails like [`FilePlace::make_folder`]. Also fails if no file can be created there.
     pub fn replacement(&self) -> io::Result<Replacement> {
         let above = Self::new(&self.folder, self.relative_path.parent().unwrap_or(Path::new("")));
         above.make_folder()?.replacement(self.relative_path.file_name().unwrap_or_default(), None)
@@ -82,7 +82,7 @@ impl FilePlace {
     /// Writes a file. It appears only when it is complete. Missing folders on the path are created.
     ///
     /// # Errors
-    /// Fails like [`Place::replacement`]. Also fails if the file cannot be written.
+    /// Fails like [`FilePlace::replacement`]. Also fails if the file cannot be written.
     pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement()?;
         io::Write::write_all(&mut file, bytes)?;

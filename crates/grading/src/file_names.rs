@@ -10,7 +10,7 @@ const MAX_MARKS: usize = 4;
 /// Returns a file's name as text. Letters with marks have their usual form (NFC). Escapes replace what is invisible or
 /// ambiguous: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other than
 /// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
-/// for letters with marks that are written in two ways ([`exact`]).
+/// for letters with marks that are written in two ways ([`to_exact`]).
 #[must_use]
 pub fn to_printable(name: &OsStr) -> String {
     map_chunks(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))

@@ -15,7 +15,7 @@ pub struct Options {
     /// The rule book that decides which finding stops judging.
     pub stopping_book: Book,
     /// Whether the trace is also judged by the fair rules
-    /// ([`Outcome::uses_fair_rules`](super::Outcome::uses_fair_rules)).
+    /// ([`Outcome::fair`](super::Outcome::fair)).
     pub uses_fair_rules: bool,
     /// Whether every step and every call is judged separately, without shortcuts. The outcome is the same; tests
     /// compare both ways.

@@ -184,9 +184,9 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// Fails with [`SandboxError::Missing`] if a required layer is missing. Required are: no new privileges, resource
-    /// limits, the reaper, the system call filter, and file rules (for root, a user per program is enough). Without
-    /// them only [`Backend::without_sandbox`] can run programs.
+    /// Fails with [`SandboxError::MissingLayers`] if a required layer is missing. Required are: no new privileges,
+    /// resource limits, the reaper, the system call filter, and file rules (for root, a user per program is enough).
+    /// Without them only [`Backend::without_sandbox`] can run programs.
     pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::select_layers(&reports).map_err(missing_layers)?;
@@ -230,8 +230,8 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// Fails with [`SandboxError::Missing`] if the grader is root and cannot become another user, because programs are
-    /// never run as root. Also fails if the supervisor does not start.
+    /// Fails with [`SandboxError::MissingLayers`] if the grader is root and cannot become another user, because
+    /// programs are never run as root. Also fails if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::available_layers(&reports).map_err(missing_layers)?;

@@ -101,8 +101,8 @@ pub struct Definition {
     pub title: &'static str,
     /// The collision types that the assignment adds, and the handling of each.
     pub handlings: &'static [Handling],
-    /// The kinds of pairs whose polynomials its detections log, in the order of a pass; [`PairKind::polynomials`] is
-    /// the number of polynomials of each.
+    /// The kinds of pairs whose polynomials its detections log, in the order of a pass; [`PairKind::polynomial_count`]
+    /// is the number of polynomials of each.
     pub pairs: &'static [PairKind],
     /// The rule for dropping coefficients of polynomials.
     pub trimming_rule: TrimmingRule,

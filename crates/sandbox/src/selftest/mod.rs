@@ -97,8 +97,8 @@ impl PromiseTable {
 ///
 /// # Errors
 ///
-/// Fails with [`SandboxError::Missing`] if the backend does not filter system calls, because attacks are never run
-/// without layers. Also fails if `folder` cannot be used. A broken promise is not an error.
+/// Fails with [`SandboxError::MissingLayers`] if the backend does not filter system calls, because attacks are never
+/// run without layers. Also fails if `folder` cannot be used. A broken promise is not an error.
 pub fn run(
     backend: &Backend,
     cc: &Path,

@@ -40,7 +40,7 @@ use trials::Trials;
 /// The result is empty if all steps are right, if no mistake reproduces at least half of the wrong steps, or if a
 /// correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three mistakes that
 /// reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same steps are in
-/// [`Explanation::equivalent_rows`]. An empty stage comes first, otherwise the earliest in the assignment's order:
+/// [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order:
 /// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
 /// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of

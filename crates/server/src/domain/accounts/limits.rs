@@ -90,7 +90,7 @@ impl Member {
     }
 
     /// Waits until an archive of the account may be checked. The archive counts as rejected until
-    /// [`ArchiveTurn::note_right_archive`] is called.
+    /// [`Self::note_right_archive`] is called.
     ///
     /// # Errors
     ///
