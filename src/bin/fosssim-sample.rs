@@ -1,4 +1,4 @@
-//! The program `fosssim-sample`, which is the [sample](fosssim_oracle::sample) as a separate program, for tests and for
+//! The program `fosssim-sample`, which is the [sample] as a separate program, for tests and for
 //! developers.
 #![forbid(unsafe_code)]
 
