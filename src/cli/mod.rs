@@ -19,7 +19,6 @@ use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
 /// Runs the command that the program's arguments name.
-#[must_use]
 pub fn main() -> ExitCode {
     // A copy of this program with a pinned mistake is nothing but a submission.
     if let Some(mistake) = sample::pinned_mistake::pinned_mistake() {

@@ -22,7 +22,6 @@ use std::{ffi::OsString, process::ExitCode};
 
 /// Runs the sample. `words` is the command line, which begins with the program's name, and `pinned` is the mistake that
 /// is pinned to this program.
-#[must_use]
 pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
     let words: Vec<OsString> = words.collect();
     // If the command line is wrong, this ends the program with the status 2.

@@ -20,7 +20,6 @@ type PinSlot = [u8; SLOT_BYTES];
 static PINNED_ID: PinSlot = empty_slot();
 
 /// Returns the mistake that is pinned to this program, if there is one.
-#[must_use]
 pub fn pinned_mistake() -> Option<&'static str> {
     read(&PINNED_ID)
 }
@@ -46,7 +45,6 @@ fn read(place: &PinSlot) -> Option<&str> {
 
 /// Writes a mistake's id into a copy of this program. Returns `None` if the program has no reserved place, or if the id
 /// is too long.
-#[must_use]
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = std::hint::black_box(MARK_BACKWARDS);
     mark.reverse();

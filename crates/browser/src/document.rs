@@ -25,7 +25,6 @@ const STYLE: &str = include_str!("../page/page.css");
 
 /// Returns the page. `module` is the WebAssembly module, not compressed. If a course is given, the page contains its
 /// suite.
-#[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", strip_lines(&SCRIPT_PARTS));
     let worker = strip_lines(&WORKER_PARTS);

@@ -9,7 +9,6 @@ pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 ///
 /// # Panics
 /// Panics if a part has 4 GiB or more, which the memory of a browser page cannot contain.
-#[must_use]
 pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.len() + 4).sum());
     for part in parts {
@@ -21,7 +20,6 @@ pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
 }
 
 /// Returns the byte strings in a joined list; `None` if bytes are missing at the end.
-#[must_use]
 pub fn split(mut bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let mut parts = Vec::new();
     while !bytes.is_empty() {

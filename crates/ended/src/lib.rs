@@ -46,7 +46,6 @@ pub enum RunEnd {
 impl RunEnd {
     /// Returns a name for the way in which the run ended, for programs and for the attack suite. Examples are `exited`,
     /// `cpu` and `violation`.
-    #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Exited(_) => "exited",
@@ -83,7 +82,6 @@ impl fmt::Display for RunEnd {
 }
 
 /// Returns the usual name and the meaning of a signal that ends programs. `signal` is its number on Linux.
-#[must_use]
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
         11 => "SIGSEGV: it accessed memory that does not belong to it",

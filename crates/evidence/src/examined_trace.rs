@@ -38,7 +38,6 @@ pub struct ExaminedTrace<'a> {
 }
 
 /// Judges a trace, and keeps the data for its explanation and its evidence, so that the trace is read only once.
-#[must_use]
 pub fn examine<'a, R: Read + Send>(
     scene: &'a Scene,
     mut trace: R,
@@ -59,14 +58,12 @@ pub fn examine<'a, R: Read + Send>(
 
 impl ExaminedTrace<'_> {
     /// Returns the likely mistakes of the program that wrote the trace ([`explain_kept_trace`]).
-    #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
         explain_kept_trace(self.scene, &self.trace)
     }
 
     /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if that can be
     /// read again, otherwise the kept part.
-    #[must_use]
     pub fn gather_evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));
         let gathered = |trace: &mut dyn Read| gather(self.scene, trace, &self.rulings, fair, &focus, budget);

@@ -35,7 +35,6 @@ pub enum StepClass {
 
 impl StepClass {
     /// Returns the letter of the class in a strip.
-    #[must_use]
     pub const fn letter(self) -> char {
         match self {
             Self::Right => 'r',
@@ -76,7 +75,6 @@ pub struct Focus {
 
 impl Focus {
     /// Returns the places of the findings of both rule books, beginning with the official book's.
-    #[must_use]
     pub fn from_outcome(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
         books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Self::from).collect()

@@ -20,7 +20,6 @@ pub struct InspectedPair {
 /// Inspects all detection calls of a pair in a step that starts from `before`. The step continues with the trace's
 /// `records`, which are the state of its mid record (used in `hybrid`) and the polynomials of its end record; without
 /// records, it continues like the reference.
-#[must_use]
 pub fn inspect(
     scene: &Scene,
     step: u32,

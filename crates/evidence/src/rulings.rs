@@ -23,7 +23,6 @@ pub struct StepRulings {
 
 impl StepRulings {
     /// Returns the rulings in the order of the steps, after the trace has been judged.
-    #[must_use]
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
         // All records after a damaged one count as damaged.
         let sound = outcome.steps_judged.saturating_sub(outcome.damaged_steps) as usize;

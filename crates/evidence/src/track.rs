@@ -22,7 +22,6 @@ pub struct Window {
 impl Window {
     /// Returns all steps if a motion of that length fits into the budget. Otherwise returns the steps around `focus`, a
     /// third of them before it.
-    #[must_use]
     pub fn for_focus(focus: u32, layout: Layout, budget: usize) -> Self {
         let per_step = 4 * layout.particles.max(1) * layout.records_per_step() as usize;
         let room = u32::try_from((budget / per_step).max(1)).unwrap_or(u32::MAX);
@@ -34,13 +33,11 @@ impl Window {
     }
 
     /// Returns whether the scene's whole motion is kept.
-    #[must_use]
     pub const fn is_whole(&self, steps: u32) -> bool {
         self.first == 0 && self.last >= steps
     }
 
     /// Returns whether a record of a step is kept.
-    #[must_use]
     pub const fn holds(&self, step: u32, is_mid: bool) -> bool {
         (self.first < step || self.first == step && !is_mid) && step <= self.last
     }
@@ -57,7 +54,6 @@ pub struct Track {
 
 impl Track {
     /// Reads the records of a trace in a window, up to the first unreadable place.
-    #[must_use]
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = LenientReader::new(trace, layout);
         let (mut frame, mut track) = (LenientFrame::default(), Self::default());

@@ -22,13 +22,11 @@ impl FilePlace {
     }
 
     /// Returns a place below this one.
-    #[must_use]
     pub fn join(&self, name: impl AsRef<Path>) -> Self {
         Self { folder: self.folder.clone(), relative_path: self.relative_path.join(name) }
     }
 
     /// Returns the whole path, for messages and for other programs.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         if self.relative_path.as_os_str().is_empty() {
             self.folder.clone()
@@ -54,7 +52,6 @@ impl FilePlace {
     }
 
     /// Returns whether there is a regular file at this place.
-    #[must_use]
     pub fn is_file(&self) -> bool {
         self.base().is_ok_and(|folder| folder.identity(self.relative_path.as_os_str()).is_some())
     }

@@ -81,7 +81,6 @@ impl Folder {
     }
 
     /// Returns the path by which the folder was opened.
-    #[must_use]
     pub fn given_path(&self) -> &Path {
         &self.shown
     }
@@ -215,14 +214,12 @@ impl Folder {
     }
 
     /// Returns whether the folder has an entry named `name`.
-    #[must_use]
     pub fn contains(&self, name: &OsStr) -> bool {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
     /// Returns the identity of a regular file and its number of names, without opening it. Returns `None` for links and
     /// for anything else.
-    #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.split_parent(Path::new(name)).ok()?;
         let stat = statat(&*folder, last, AtFlags::SYMLINK_NOFOLLOW).ok();
@@ -231,7 +228,6 @@ impl Folder {
     }
 
     /// Returns a path that leads to this folder while it is open, even if the folder is moved.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
     }

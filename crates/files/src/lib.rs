@@ -49,7 +49,6 @@ impl Identity {
     }
 
     /// Returns the identity of the file that has this metadata.
-    #[must_use]
     pub fn from_metadata(metadata: &Metadata) -> Self {
         Self(metadata.dev(), metadata.ino())
     }

@@ -69,13 +69,11 @@ impl Replacement {
     }
 
     /// Returns the path of the unfinished file. It begins with the path by which the folder was opened.
-    #[must_use]
     pub fn unfinished_path(&self) -> PathBuf {
         self.folder.given_path().join(&self.unfinished_name)
     }
 
     /// Returns the path that the file has when it is finished.
-    #[must_use]
     pub fn target(&self) -> PathBuf {
         self.folder.given_path().join(&self.name)
     }

@@ -69,7 +69,6 @@ fosssim_num::closed_set! {
 
 impl Cause {
     /// Returns true if the original rejects the trace and the fair rules accept it, and false in the opposite case.
-    #[must_use]
     pub const fn is_original_too_strict(self) -> bool {
         (self as u8) <= (Self::BorderlineDecision as u8)
     }

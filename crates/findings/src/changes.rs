@@ -41,7 +41,6 @@ pub struct Changes<'a> {
 impl Grade {
     /// Returns the changes since the earlier grading, if there is one. A scene that was not run in one of the gradings
     /// counts as unchanged. Groups that are left out of this grade are not compared.
-    #[must_use]
     pub fn changes(&self) -> Option<Changes<'_>> {
         let before = self.earlier_grade.as_ref()?;
         let is_here = |group: &&EarlierGroup| self.groups.iter().any(|own| own.name == group.name);

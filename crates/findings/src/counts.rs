@@ -10,7 +10,6 @@ pub struct FindingCounts([u64; FindingKind::ALL.len()]);
 
 impl FindingCounts {
     /// Returns the count of one kind.
-    #[must_use]
     pub fn get(&self, kind: FindingKind) -> u64 {
         self.0[kind as usize]
     }
@@ -22,13 +21,11 @@ impl FindingCounts {
 
     /// Returns the number of findings that make the original's collision verdict fail. They concern collisions and
     /// polynomials.
-    #[must_use]
     pub fn collisions(&self) -> u64 {
         self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)
     }
 
     /// Returns the number of findings of all kinds.
-    #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }

@@ -25,7 +25,6 @@ pub struct Disclosure {
 
 impl Disclosure {
     /// Creates a disclosure of everything that was found by judging a trace.
-    #[must_use]
     pub fn from_outcome(judged: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
             let found = judged.findings_by(book);
@@ -48,7 +47,6 @@ impl Disclosure {
     }
 
     /// Returns the findings by the official rule book, or by the original's rules if the fair rules were not requested.
-    #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
             (Book::Fair, Some(fair)) => fair,
@@ -90,7 +88,6 @@ pub enum DisclosedFinding {
 
 impl DisclosedFinding {
     /// Returns the kind of the finding.
-    #[must_use]
     pub const fn kind(&self) -> FindingKind {
         match self {
             Self::Place { kind, .. } => *kind,

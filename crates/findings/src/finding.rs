@@ -53,7 +53,6 @@ fosssim_num::closed_set! {
 impl FindingKind {
     /// Returns the original's message for findings of this kind. `None` for positions and velocities, which only
     /// increase residuals, and for kinds that the original does not check.
-    #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
             Self::MissedCollision => Some("Missed collision"),
@@ -81,7 +80,6 @@ pub struct Finding {
 
 impl Finding {
     /// Returns the finding's kind.
-    #[must_use]
     pub const fn kind(&self) -> FindingKind {
         match self.detail {
             FindingDetail::MissedCollision { .. } => FindingKind::MissedCollision,
@@ -298,7 +296,6 @@ pub enum FindingDetail {
 
 impl FindingDetail {
     /// Returns the object of the step that the finding is about.
-    #[must_use]
     pub const fn place(&self) -> FindingPlace {
         match self {
             Self::MissedCollision { expected }
@@ -330,7 +327,6 @@ impl FindingDetail {
 
     /// Returns the pair that the finding is about; `None` if it is not about a pair, or if the trace names objects that
     /// do not form one.
-    #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         match (self, self.place()) {
             (Self::SuperfluousCollision { actual } | Self::RepeatedCollision { actual }, _) => actual.pair(),
@@ -341,7 +337,6 @@ impl FindingDetail {
     }
 
     /// Returns the detection pass that the finding is about, if it is about one.
-    #[must_use]
     pub const fn pass(&self) -> Option<Pass> {
         match self.place() {
             FindingPlace::Polynomial(place) => Some(place.pass),
@@ -437,7 +432,6 @@ fosssim_num::closed_set! {
 
 impl Role {
     /// Returns the role of the polynomial with the index `number` in a detection call.
-    #[must_use]
     pub const fn from_number(kind: PairKind, number: usize) -> Self {
         match (kind, number) {
             (_, 0) => Self::Overlap,

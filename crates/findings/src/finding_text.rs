@@ -26,7 +26,6 @@ struct SteplessFinding<'a>(&'a Finding);
 impl Finding {
     /// Returns the text of the finding without its step. In sentences about the first record, bodies "start" somewhere;
     /// in those about other records, they "end" there.
-    #[must_use]
     pub fn describe(&self) -> impl Display + '_ {
         SteplessFinding(self)
     }
@@ -207,7 +206,6 @@ impl Display for VectorText {
 
 /// Returns the number of whole detection passes by which two counts differ, and whether the trace has more; `None` if
 /// the number is not whole.
-#[must_use]
 pub fn count_whole_passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
     let difference = actual.abs_diff(expected);
     (per_pass > 0 && difference > 0 && difference.is_multiple_of(per_pass))
@@ -216,7 +214,6 @@ pub fn count_whole_passes(expected: usize, actual: usize, per_pass: usize) -> Op
 
 /// Returns whether a text has only visible ASCII characters and blanks. Reports check all their texts with it. It is in
 /// this crate because this crate is optimized, and that of reports is not.
-#[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
 }

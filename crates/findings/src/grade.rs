@@ -120,7 +120,6 @@ pub struct Grade {
 impl Grade {
     /// Returns the common verdict of groups, their points, and the points that they are worth. Extra groups count only
     /// if there are no other groups.
-    #[must_use]
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
         let has_others = groups.iter().any(|group| !group.extra);
         let counted = || groups.iter().filter(move |group| !group.extra);
@@ -133,7 +132,6 @@ impl Grade {
     }
 
     /// Returns the extra points that the submission gets and the maximum; `None` if the suite has no extra points.
-    #[must_use]
     pub fn extra_points(&self) -> Option<(f64, f64)> {
         let extra = || self.groups.iter().filter(|group| group.extra);
         let reached: Option<f64> = extra().map(|group| group.points).sum();
@@ -156,13 +154,11 @@ impl Grade {
     }
 
     /// Returns whether students may see all groups.
-    #[must_use]
     pub fn is_visible(&self) -> bool {
         self.groups.iter().all(|group| group.visibility == Visibility::Visible)
     }
 
     /// Returns the grade as it is after its hidden groups are published.
-    #[must_use]
     pub fn with_hidden_published(&self) -> Self {
         let mut published = self.clone();
         published.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
@@ -170,7 +166,6 @@ impl Grade {
     }
 
     /// Returns the course's note on a mistake, if there is one.
-    #[must_use]
     pub fn course_note(&self, mistake: &Explanation) -> Option<&CourseNote> {
         self.notes.get(&mistake.key)
     }
@@ -181,13 +176,11 @@ impl Grade {
     }
 
     /// Returns whether the grader failed on any part of the submission. Students must not get such a grade.
-    #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
     }
 
     /// Returns whether some scenes were not run. The submission then has no points.
-    #[must_use]
     pub fn is_incomplete(&self) -> bool {
         self.count_verdict(Verdict::NotRun) > 0
     }
@@ -195,7 +188,6 @@ impl Grade {
     /// Returns the reason why the submission as a whole could not be graded as usual. Either it has no program that can
     /// be run, it could not be built, it belongs to another milestone, or nothing is written in it yet. `None` if there
     /// is no such reason.
-    #[must_use]
     pub fn submission_fault(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.inferred_milestone {
             return Some(SubmissionFault::Milestone(other));
@@ -212,13 +204,11 @@ impl Grade {
     }
 
     /// Returns the result of the build if it did not produce a program.
-    #[must_use]
     pub fn failed_build(&self) -> Option<&Build> {
         self.build.as_ref().filter(|build| !build.end.is_success())
     }
 
     /// Returns whether both grades have the same scenes, in the same groups and for the same points.
-    #[must_use]
     pub fn has_same_suite(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
             (&own.name, own.visibility, own.hints, own.max_points)
@@ -231,19 +221,16 @@ impl Grade {
     }
 
     /// Returns the number of scenes whose results were reused from an earlier grading.
-    #[must_use]
     pub fn count_reused(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
     }
 
     /// Returns the number of scenes that the two rule books judge differently.
-    #[must_use]
     pub fn count_differing(&self) -> usize {
         self.scenes().filter(|scene| scene.difference_cause.is_some()).count()
     }
 
     /// Returns the number of scenes that have this verdict.
-    #[must_use]
     pub fn count_verdict(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
@@ -334,7 +321,6 @@ pub struct SceneGrade {
 
 impl GroupGrade {
     /// Returns the points that all scenes of the group are worth, without points for speed.
-    #[must_use]
     pub fn max_points_of_scenes(&self) -> f64 {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)
     }

@@ -22,7 +22,6 @@ pub enum Hints {
 
 impl Hints {
     /// Returns the level's name in suites, and a few words about its meaning.
-    #[must_use]
     pub const fn describe(self) -> (&'static str, &'static str) {
         match self {
             Self::None => ("none", "the verdict only"),
@@ -33,14 +32,12 @@ impl Hints {
     }
 
     /// Returns whether reports show likely mistakes at this level.
-    #[must_use]
     pub const fn explains(self) -> bool {
         matches!(self, Self::What | Self::Full)
     }
 
     /// Reduces what was found in a trace to what this level shows: nothing at [`Hints::None`], only the places and
     /// kinds of findings at the next two levels, and everything at [`Hints::Full`].
-    #[must_use]
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
         match self {
             Self::None => None,
@@ -64,7 +61,6 @@ impl Hints {
     }
 
     /// Reduces a finding to what this level shows. Parts that an earlier level has removed are not restored.
-    #[must_use]
     pub const fn limit_finding(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
             DisclosedFinding::Full(finding) => self.disclose_finding(&finding),
@@ -74,7 +70,6 @@ impl Hints {
 
     /// Returns the part of a finding that this level shows: nothing at [`Hints::None`], and no values below
     /// [`Hints::Full`].
-    #[must_use]
     pub const fn disclose_finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {
             Self::None => None,

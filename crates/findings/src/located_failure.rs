@@ -58,7 +58,6 @@ pub struct LocatedFailure {
 impl FailureKind {
     /// Returns how a program failed that ended in this way; `None` if it ended well, or if the kind of failure is
     /// unknown.
-    #[must_use]
     pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {
             RunEnd::Signalled(_) => Some(Self::Crash),

@@ -57,7 +57,6 @@ pub struct Outcome {
 
 impl Outcome {
     /// Creates the outcome for a trace of which no step is judged yet.
-    #[must_use]
     pub fn empty(steps: u32) -> Self {
         Self {
             parity: parity::Judgement::default(),

@@ -42,7 +42,6 @@ pub struct Residuals {
 impl Residuals {
     /// Returns each residual and its bound, in the original's order: accumulated position, accumulated velocity,
     /// maximum position, maximum velocity. A residual passes if it is strictly smaller than its bound, so NaN fails.
-    #[must_use]
     pub const fn with_bounds(&self) -> [(f64, f64); 4] {
         [
             (self.accumulated_position, PARITY_ACCUMULATED_RESIDUAL),

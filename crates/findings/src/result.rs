@@ -56,7 +56,6 @@ pub struct SceneResult {
 
 impl SceneResult {
     /// Creates the result of a scene that was not run.
-    #[must_use]
     pub fn without_run(scene: &str, steps: u32, verdict: Verdict, reason: Reason) -> Self {
         Self {
             scene: scene.to_owned(),
@@ -330,7 +329,6 @@ pub enum BuildEnd {
 
 impl BuildEnd {
     /// Returns whether the build produced the program.
-    #[must_use]
     pub const fn is_success(&self) -> bool {
         matches!(self, Self::Success)
     }

@@ -40,7 +40,6 @@ fosssim_num::closed_set! {
 
 impl Rules {
     /// Returns the rule book whose verdict decides exit codes and points.
-    #[must_use]
     pub const fn official(self) -> Book {
         match self {
             Self::Parity | Self::Both => Book::Parity,
@@ -49,7 +48,6 @@ impl Rules {
     }
 
     /// Returns whether the fair rules are requested.
-    #[must_use]
     pub const fn includes_fair(self) -> bool {
         !matches!(self, Self::Parity)
     }
@@ -72,7 +70,6 @@ fosssim_num::closed_set! {
 
 impl Outcome {
     /// Returns the verdict by a rule book. If the fair rules were not applied, it is that by the original's rules.
-    #[must_use]
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
             (Book::Fair, Some(fair)) => match (fair.verdict, fair.refusal) {
@@ -96,7 +93,6 @@ impl Outcome {
     /// Returns the number of steps that are right by a rule book. A fault outside the steps counts as one wrong step,
     /// for example a wrong first record, or small errors that add up. Therefore only accepted traces have all steps
     /// right.
-    #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
         let right = self.steps_judged_by(book).saturating_sub(wrong);
@@ -107,14 +103,12 @@ impl Outcome {
     }
 
     /// Returns the reason why judging by a rule book stopped early; `None` if it did not.
-    #[must_use]
     pub fn stop_by(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
         self.stop.clone().or(self.parity.endless_step.filter(|_| is_parity).map(Stop::Step))
     }
 
     /// Returns the number of steps that were judged by a rule book.
-    #[must_use]
     pub fn steps_judged_by(&self, book: Book) -> u32 {
         let end = match (book, &self.fair) {
             (Book::Fair, Some(fair)) => fair.first_unjudged_step,
@@ -124,7 +118,6 @@ impl Outcome {
     }
 
     /// Returns the findings by a rule book. If the fair rules were not applied, they are those by the original's rules.
-    #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {
             (Book::Fair, Some(fair)) => &fair.findings,

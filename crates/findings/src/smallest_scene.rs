@@ -41,13 +41,11 @@ pub struct SmallestScene {
 
 impl SmallestScene {
     /// Returns the size of the scene. Scenes are compared by it.
-    #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }
 
     /// Returns whether the scene has another content and another cause than all scenes in `found`.
-    #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
         let cause =
             |one: &Self| one.explanations.first().filter(|cause| cause.is_about_program()).map(Explanation::statement);

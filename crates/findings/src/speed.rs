@@ -24,7 +24,6 @@ pub struct SpeedMarking {
 
 impl SpeedMarking {
     /// Returns the points that a ratio gives.
-    #[must_use]
     pub fn points_at(&self, ratio: f64) -> f64 {
         self.points * ((self.none_at - ratio) / (self.none_at - self.full_at)).clamp(0.0, 1.0)
     }
@@ -77,7 +76,6 @@ pub struct SpeedRatio {
 
 impl SpeedGrade {
     /// Returns the points for the speed of a group, from the timings of its scenes.
-    #[must_use]
     pub fn from_scenes<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
         let source = source(&scenes.into_iter().collect::<Vec<_>>());
         let points = match &source {

@@ -41,19 +41,16 @@ fosssim_num::closed_set! {
 
 impl Verdict {
     /// Returns the verdict with this code.
-    #[must_use]
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|verdict| verdict.code() == code)
     }
 
     /// Returns whether the verdict is about the contents of a trace, and not about how the program ended.
-    #[must_use]
     pub const fn is_wrong_trace(self) -> bool {
         matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)
     }
 
     /// Returns whether the scene gets its full points.
-    #[must_use]
     pub const fn is_accepted(self) -> bool {
         matches!(self, Self::Accepted)
     }

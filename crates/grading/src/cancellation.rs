@@ -24,7 +24,6 @@ impl Cancellation {
     }
 
     /// Returns whether the grading has been stopped.
-    #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::SeqCst)
     }

@@ -102,7 +102,6 @@ pub fn store_card_file(folder: &FilePlace, card: &str) -> io::Result<String> {
 }
 
 /// Reads a stored card from a folder; `None` if there is none, or if it was changed.
-#[must_use]
 pub fn read_card(folder: &FilePlace, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
     let (packed, _) = is_name.then(|| card_location(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;

@@ -39,7 +39,6 @@ pub struct ProgramRun {
 
 impl ProgramRun {
     /// Returns the values for a trace that no program wrote. They are the same as for a program that ended well.
-    #[must_use]
     pub fn without_program() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
         Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }
@@ -112,7 +111,6 @@ pub enum SearchDepth {
 
 impl SearchDepth {
     /// Searches for explanations of a trace.
-    #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
             Self::NotFinite => diagnose::explain_not_finite(scene, trace),
@@ -124,7 +122,6 @@ impl SearchDepth {
 /// Returns the result of one scene, with everything that any reader may see. The function `explain` searches for the
 /// likely mistake. It is not called if no reader may see the mistake, if the fair rules find no fault, or if the way in
 /// which the program ended is the worse fault.
-#[must_use]
 pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
     let JudgedRun { program, outcome: judged, rules, hints, .. } = *run;
     let of_program = program_verdict(&program.ended, judged);

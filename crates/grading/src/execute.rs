@@ -73,7 +73,6 @@ impl Runner<'_> {
     /// Runs `program` on a scene in a new working folder, which is removed afterwards, and judges the trace. After an
     /// error of the grader or the machine, the program is run once more. If there is a second error, the verdict is a
     /// judge error. `on_step` receives the number of every judged step.
-    #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
         loop {

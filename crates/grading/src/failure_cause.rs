@@ -40,7 +40,6 @@ const MAX_CHANCE_PROBABILITY: f64 = 0.01;
 
 impl ContentIndex {
     /// Returns everything that a scene contains; empty if it can't be simulated to its end.
-    #[must_use]
     pub fn for_scene(scene: &Scene) -> Contents {
         let coverage = Coverage::for_scene(scene).unwrap_or_default();
         let values = coverage.values().map(|(family, axis, value)| Self { family, value: Some((axis, value)) });
@@ -72,7 +71,6 @@ impl ContentIndex {
 }
 
 /// Returns the contents that all failing scenes have in common; `None` if the evidence for them is weak.
-#[must_use]
 pub fn locate_failure(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failure.is_some()).collect();
     let first = failed.first()?;

@@ -11,14 +11,12 @@ const MAX_MARKS: usize = 4;
 /// ambiguous: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other than
 /// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
 /// for letters with marks that are written in two ways ([`to_exact`]).
-#[must_use]
 pub fn to_printable(name: &OsStr) -> String {
     map_chunks(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
 /// Returns a file's name as [`to_printable`] does, but with escapes instead of combining marks. Different names then
 /// always have different texts.
-#[must_use]
 pub fn to_exact(name: &OsStr) -> String {
     // If normalization changes a letter, its length or its code point changes.
     map_chunks(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))

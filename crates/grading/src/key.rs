@@ -14,7 +14,6 @@ impl ResultKey {
     /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `words`, which
     /// name everything else that matters, such as the rules, the limits, the command and the kind of judging. The
     /// grader itself also belongs to the key.
-    #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::from_parts(running_build(), program, scene, words)
     }
@@ -37,7 +36,6 @@ impl ResultKey {
 ///
 /// If the file contains a GNU build ID, which is a digest that the linker computes, the ID is used instead. Reading all
 /// of the file would take as long as judging ten small scenes.
-#[must_use]
 pub fn running_build() -> &'static str {
     static BUILD_ID: OnceLock<String> = OnceLock::new();
     BUILD_ID.get_or_init(|| {

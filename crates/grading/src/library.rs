@@ -36,7 +36,6 @@ pub fn all_names() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns the content of a built-in scene's file; `None` if there is no scene with this name.
-#[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
     contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_generated(name).map(GeneratedScene::xml))
 }
@@ -48,14 +47,12 @@ fn find_generated(name: &str) -> Option<&'static GeneratedScene> {
 }
 
 /// Returns the recording of a scene, compressed with zstd; `None` if there is none.
-#[must_use]
 #[cfg(target_os = "linux")]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
 /// Returns `None`, because builds that cannot run programs contain no recordings.
-#[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
     None
@@ -70,13 +67,11 @@ pub fn recordings() -> impl Iterator<Item = &'static str> {
 /// Returns a file from the folder of recordings. Its path is `manifest.txt`, `Group/name.steps` or
 /// `Group/name.bin.zst`.
 #[cfg(target_os = "linux")]
-#[must_use]
 pub fn recording_file(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
 /// Returns the assignment in whose folder a scene is.
-#[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if find_generated(name).is_some() {
         return Some(GENERATED_ASSIGNMENT);
@@ -88,7 +83,6 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 /// Returns whether a pattern matches a scene's name. If the pattern begins with an assignment's folder, as in `t2m2/*`,
 /// it matches only scenes in that folder. If a version follows the folder, as in `t2m2@1/*`, it matches only scenes of
 /// that version.
-#[must_use]
 pub fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
     match find_version(folder) {

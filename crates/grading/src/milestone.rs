@@ -48,7 +48,6 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
 
 /// Returns whether the library of the milestone `found` lacks integrators or collision types that scenes of `expected`
 /// use.
-#[must_use]
 pub fn lacks(found: Assignment, expected: Assignment) -> bool {
     let (found, expected) = (&found.definition().library, &expected.definition().library);
     expected.integrators.iter().any(|one| !found.integrators.contains(one))

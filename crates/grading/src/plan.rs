@@ -50,7 +50,6 @@ impl Plan {
     }
 
     /// Returns the level of detail for students about a scene.
-    #[must_use]
     pub fn student_hints(&self, scene: &str) -> Hints {
         let group = self.groups.iter().find(|group| group.scenes.iter().any(|task| task.name == scene));
         group.map_or(Hints::None, |group| group.marking.hints)
@@ -69,7 +68,6 @@ impl Plan {
 
     /// Returns the milestone whose programs the suite grades. If the file does not name it, it is the first milestone
     /// that can run most of the scenes.
-    #[must_use]
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
             self.scenes().filter(|task| task.scene.unknown_features(*assignment).next().is_none()).count()
@@ -80,7 +78,6 @@ impl Plan {
     }
 
     /// Returns the points that the suite is worth, without extra points.
-    #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
         let counted = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.is_extra);
@@ -89,7 +86,6 @@ impl Plan {
 }
 
 /// Returns the text of a built-in suite. `t2m2@1` means a version, and `t2m2` means the newest one.
-#[must_use]
 pub fn find_built_in_suite(name: &str) -> Option<&'static str> {
     assignments::find_version(name).map(|(_, version)| version.suite)
 }

@@ -76,7 +76,6 @@ impl Recording {
     }
 
     /// Describes how this recording differs from the stored files; `None` if it does not differ.
-    #[must_use]
     pub fn describe_difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
         let mut text = String::new();
@@ -95,14 +94,12 @@ impl Recording {
 }
 
 /// Returns the manifest of these recordings, in the given order.
-#[must_use]
 pub fn render_manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
     recordings.into_iter().map(Recording::manifest_line).collect()
 }
 
 /// Returns a unified diff from the stored recording to the present simulation; empty if they are equal. Line ends are
 /// ignored, because Git may have changed them in the stored text.
-#[must_use]
 pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
     let recorded = recorded.replace("\r\n", "\n");

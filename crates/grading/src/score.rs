@@ -20,7 +20,6 @@ use std::time::Duration;
 /// share of its steps without a finding, but never all its points. Every other scene gets zero points. With
 /// [`Credit::All`], the group gets points only if every scene is accepted. If the grader failed on a scene or did not
 /// run it, neither the scene nor its group has points.
-#[must_use]
 pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     let each = scene_points(marking.points, results.len());
     let all_accepted = results.iter().all(|(result, _)| result.verdict.is_accepted());
@@ -134,7 +133,6 @@ fn point_share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Opti
 
 /// Finds points or a verdict in a grade that do not follow from its scenes. A grade from a file that is not trusted is
 /// checked before its points are used.
-#[must_use]
 pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
     if !grade.groups.iter().all(|group| POINTS_RANGE.contains(&group.max_points)) || grade.max_points != max_points {

@@ -29,7 +29,6 @@ const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::fr
 
 /// Returns limits that allow only as much time as a program needs for a small scene. If the trace is complete when time
 /// runs out, it is still read.
-#[must_use]
 pub fn shorten_limits(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
 }
@@ -80,7 +79,6 @@ pub struct WrongScene<'a> {
 
 /// Returns the causes of the wrong scenes: the likely mistakes, the ways in which the program failed, and for a few
 /// scenes an unknown cause.
-#[must_use]
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely = likely.iter().filter(|one| one.is_about_program() || one.is_not_finite()).map(|one| {
         match one.is_not_finite() {

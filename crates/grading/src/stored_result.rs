@@ -21,7 +21,6 @@ pub struct StoredResult {
 
 /// Returns the line that stores a result under its key, with a line feed at its end. The submission's name is only for
 /// people who read the file.
-#[must_use]
 pub fn format_line(key: &ResultKey, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
     let mut line =
@@ -31,7 +30,6 @@ pub fn format_line(key: &ResultKey, submission: &str, result: &SceneResult) -> V
 }
 
 /// Reads the entry in a line; `None` if the line is damaged or has another version.
-#[must_use]
 pub fn read_line(line: &[u8]) -> Option<StoredResult> {
     serde_json::from_slice(line).ok().filter(|entry: &StoredResult| entry.form == FORM_VERSION)
 }

@@ -7,14 +7,12 @@ use strsim::jaro_winkler;
 const MAX_COMPARED_LETTERS: usize = 60;
 
 /// Returns the end of a message about an unknown word. If a known word is similar, the text suggests it.
-#[must_use]
 pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
     find_closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
 }
 
 /// Returns the names that are most similar to a typed word, the most similar first, and at most `most`. Both the whole
 /// name and its last part are compared, because the group may be mistyped or missing.
-#[must_use]
 pub fn find_nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
     let last = |name: &str| normalize_word(name.rsplit('/').next().unwrap_or_default());
     let (typed, typed_last) = (normalize_word(word), last(word));

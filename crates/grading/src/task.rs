@@ -21,20 +21,17 @@ pub struct SceneTask {
 
 impl SceneTask {
     /// Returns the scene's name in the form that commands accept. For embedded scenes it is `asset:Group/name`.
-    #[must_use]
     pub fn address(&self) -> String {
         let is_embedded = library::scene(&self.name).is_some_and(|embedded| embedded == self.xml);
         format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 
     /// Creates the result of the scene for the case that no run was judged.
-    #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
         SceneResult::without_run(&self.name, self.scene.step_count(), verdict, why)
     }
 
     /// Creates the result of the scene for the case that the grader or the machine failed.
-    #[must_use]
     pub fn failure_result(&self, failure: Failure) -> SceneResult {
         self.without_run(Verdict::JudgeError, Reason::Failed(failure))
     }

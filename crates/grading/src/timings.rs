@@ -40,7 +40,6 @@ pub struct Timings(Mutex<BTreeMap<RunPart, (Duration, u32)>>);
 
 impl Timings {
     /// Returns the processor time that a part of all runs took, and the number of runs.
-    #[must_use]
     pub fn total(&self, part: RunPart) -> (Duration, u32) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&part).copied().unwrap_or_default()
     }

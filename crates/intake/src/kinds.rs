@@ -30,7 +30,6 @@ pub const START_BYTES: usize = 512;
 
 impl FileKind {
     /// Returns the kind of a file that begins with `start`. At most [`START_BYTES`] bytes are used.
-    #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {
             [0x7f, b'E', b'L', b'F', ..] | [b'#', b'!', ..] => Self::Program,
@@ -43,7 +42,6 @@ impl FileKind {
 }
 
 /// Describes a file that begins with `start`, for messages.
-#[must_use]
 pub fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [
         (b"MZ", "a program for Windows"),

@@ -118,7 +118,6 @@ pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec
 
 /// Returns the folder of an unpacked archive that contains the submission. Many archives have a single folder at their
 /// top, which is returned then.
-#[must_use]
 pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     let mut tops = files.iter().map(|file| file.components().next().filter(|_| file.components().count() > 1));
     match tops.next().flatten() {
@@ -130,7 +129,6 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
 /// Returns whether file managers or build tools create files or folders with this name automatically. These are
 /// attributes and window settings of Finder, picture caches of Explorer, and CMake's cache of a build on another
 /// machine, which would prevent a build here.
-#[must_use]
 pub fn is_system_file(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
     const NAMES: [&[u8]; 6] =

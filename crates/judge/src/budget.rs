@@ -35,7 +35,6 @@ pub struct Budget<'a> {
 impl<'a> Budget<'a> {
     /// Creates the budget for judging a trace of `scene` by the original's rules, or by the fair rules if `fair`. Each
     /// rule book has a separate budget. Explaining and showing a trace have the same limit as the original's rules.
-    #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR_WORK_FACTOR } else { PARITY_WORK_FACTOR };
         let at_least = min_scene_work(scene).saturating_mul(factor);
@@ -48,7 +47,6 @@ impl<'a> Budget<'a> {
     }
 
     /// Returns the remaining work.
-    #[must_use]
     pub fn remaining(&self) -> u64 {
         self.remaining
     }

@@ -16,7 +16,6 @@ pub struct KeptTrace {
 
 impl KeptTrace {
     /// Creates a store for at most `most` bytes. A small number suits a trace that is not needed again.
-    #[must_use]
     pub const fn new(most: usize) -> Self {
         Self { bytes: Vec::new(), max_bytes: most, has_ended: false, is_cut: false }
     }
@@ -27,13 +26,11 @@ impl KeptTrace {
     }
 
     /// Returns the kept bytes.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
     /// Returns whether the whole trace was kept.
-    #[must_use]
     pub const fn is_whole(&self) -> bool {
         self.has_ended && !self.is_cut
     }

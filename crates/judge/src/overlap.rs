@@ -52,14 +52,12 @@ impl OverlapStudy {
     }
 
     /// Returns the distance between the objects.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         length(self.normal)
     }
 
     /// Returns the approach speed of the objects times their distance. The product is positive if they approach each
     /// other.
-    #[must_use]
     pub fn approach(&self) -> f64 {
         (self.velocities[0] - self.velocities[1]).dot(&self.normal)
     }

@@ -48,7 +48,6 @@ impl Curve {
     }
 
     /// Returns the zeros that count as real, ascending.
-    #[must_use]
     pub fn real_zeros(&self) -> Vec<f64> {
         let real = self.zeros.iter().filter(|(_, imaginary)| imaginary.abs() < MIN_IMAGINARY_PART);
         let mut zeros: Vec<f64> = real.map(|&(real, _)| real).collect();
@@ -159,7 +158,6 @@ impl Study {
 
     /// Returns whether a logged polynomial is right by the fair rules: equal except for a positive factor, round-off,
     /// and small leading coefficients.
-    #[must_use]
     pub fn is_right(&self, number: usize, logged: &[f64]) -> bool {
         let expected = formulas::BoundedPairMotion::from(&self.motion).polynomials();
         let own = (number < self.curves.len()).then(|| expected.polynomial(number));

@@ -13,7 +13,6 @@ const CANCELLATION_FLOOR: f64 = 1e-13;
 
 /// Returns the positive factor of the trace's polynomial on which most coefficients agree, or 1 if no factor is better.
 /// Both lists have the highest power first and are aligned at the constant term.
-#[must_use]
 pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
         let holds = |power: &usize| {
@@ -36,7 +35,6 @@ pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
 }
 
 /// Returns the powers of t whose coefficients differ with `factor`, the highest first.
-#[must_use]
 pub fn find_differing_powers(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
     let powers = (0..expected.len().max(actual.len())).rev();
     powers.filter(|&power| !coefficient_agrees(expected, actual, power, factor)).collect()

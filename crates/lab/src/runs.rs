@@ -14,19 +14,16 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Returns the trace that a program writes, or the part written so far if the program does not end.
-#[must_use]
 pub fn record_trace(scene: &Scene, student: Student) -> Vec<u8> {
     student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
 /// Returns the outcome by both rule books, on one thread, because the tools try many programs at one time.
-#[must_use]
 pub fn judge(scene: &Scene, trace: &[u8]) -> Outcome {
     replay::judge(scene, trace, &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ())
 }
 
 /// Returns whether the fair rules accept the trace.
-#[must_use]
 pub fn is_accepted(outcome: &Outcome) -> bool {
     outcome.fair.as_ref().is_some_and(|fair| fair.verdict == FairVerdict::Accepted)
 }

@@ -30,14 +30,12 @@ pub type BoundedVector<N = f64> = Plane<BoundedValue<N>>;
 impl BoundedValue {
     /// Returns a number without error, such as a factor of a formula.
     #[inline]
-    #[must_use]
     pub const fn from_exact(value: f64) -> Self {
         Self { value, bound: 0.0 }
     }
 
     /// Returns an input with an error of at most one rounding.
     #[inline]
-    #[must_use]
     pub const fn from_rounded(value: f64) -> Self {
         Self { value, bound: value.abs() }
     }
@@ -46,14 +44,12 @@ impl BoundedValue {
 impl BoundedVector {
     /// Returns a vector without error.
     #[inline]
-    #[must_use]
     pub fn from_exact(v: Vec2) -> Self {
         Self { x: BoundedValue::from_exact(v.x), y: BoundedValue::from_exact(v.y) }
     }
 
     /// Returns a vector whose components each have an error of at most one rounding.
     #[inline]
-    #[must_use]
     pub fn from_rounded(v: Vec2) -> Self {
         Self { x: BoundedValue::from_rounded(v.x), y: BoundedValue::from_rounded(v.y) }
     }

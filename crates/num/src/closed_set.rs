@@ -32,7 +32,6 @@ macro_rules! closed_set {
 
         impl $set {
             /// Returns the name for people, files and command lines.
-            #[must_use]
             $vis const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)+ }
             }
@@ -45,7 +44,6 @@ macro_rules! closed_set {
 
         impl $set {
             $(#[$of_more])*
-            #[must_use]
             $vis const fn $second(self) -> &'static str {
                 match self { $(Self::$variant => $more,)+ }
             }

@@ -19,7 +19,6 @@ impl Interval {
     /// Returns whether the two intervals share a point. Ends that are equal count as shared, and an interval with a NaN
     /// bound shares none.
     #[inline]
-    #[must_use]
     pub fn touches(self, other: Self) -> bool {
         other.lo <= self.hi && self.lo <= other.hi
     }
@@ -41,7 +40,6 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
 
     /// Returns the intervals, in order.
     #[inline]
-    #[must_use]
     pub fn as_slice(&self) -> &[Interval] {
         &self.list[..self.length]
     }
@@ -89,7 +87,6 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// # Panics
     /// Panics if the result would contain more than `CAPACITY` intervals.
     #[inline]
-    #[must_use]
     pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {
         let mut both = Self::EMPTY;
         for &a in self.as_slice() {
@@ -106,7 +103,6 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Returns the first time of the set from `now` on, `+inf` if none (root-finder.md 16.2). An interval that ends
     /// exactly at `now` does not count.
     #[inline]
-    #[must_use]
     pub fn next_time(&self, now: f64) -> f64 {
         for interval in self.as_slice() {
             // An interval with a NaN end is not skipped.

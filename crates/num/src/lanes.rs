@@ -91,19 +91,16 @@ const MIN_UNKNOWNS: usize = 8;
 
 impl Instructions {
     /// Returns the widest instructions for `pairs` pairs in all steps of a scene, if the check is worth the time.
-    #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
         if pairs < MIN_PAIRS { Self::scalar() } else { Self::default() }
     }
 
     /// Chooses the width for systems of linear equations with `unknowns` unknowns.
-    #[must_use]
     pub fn for_unknowns(unknowns: usize) -> Self {
         if unknowns < MIN_UNKNOWNS { Self::scalar() } else { Self::default() }
     }
 
     /// Returns instructions with one lane, on every machine.
-    #[must_use]
     pub const fn scalar() -> Self {
         Self(Arch::Scalar)
     }

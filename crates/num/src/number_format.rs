@@ -7,7 +7,6 @@ const SIGNIFICANT_DIGITS: i32 = 6;
 /// Returns the number in the format `%g` with six significant digits, as printed by glibc: `0`, `-0`, `1e-05`,
 /// `0.00282843`, `1e+06`, `inf`, `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to
 /// even, as the library does.
-#[must_use]
 pub fn format_g(value: f64) -> String {
     let sign = if value.is_sign_negative() { "-" } else { "" };
     if value.is_nan() {
@@ -37,7 +36,6 @@ pub fn format_g(value: f64) -> String {
 
 /// Returns the shortest text that reads back as the same bits, with an exponent if it would be long otherwise:
 /// `-0.1875`, `1e-12`, `nan`, `-nan`, `inf`.
-#[must_use]
 pub fn format_exact(value: f64) -> String {
     let magnitude = value.abs();
     if value.is_finite() && (magnitude == 0.0 || (1e-5..1e9).contains(&magnitude)) {

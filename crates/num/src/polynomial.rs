@@ -37,7 +37,6 @@ impl Polynomial {
     /// # Panics
     /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
-    #[must_use]
     pub fn trimmed(coefficients: &[f64]) -> Self {
         let mut polynomial = Self::untrimmed(coefficients);
         polynomial.trim();
@@ -62,7 +61,6 @@ impl Polynomial {
     /// # Panics
     /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
-    #[must_use]
     pub fn untrimmed(coefficients: &[f64]) -> Self {
         let mut storage = [0.0; MAX_COEFFICIENTS];
         storage[MAX_COEFFICIENTS - coefficients.len()..].copy_from_slice(coefficients);
@@ -72,14 +70,12 @@ impl Polynomial {
 
     /// Returns the coefficients, highest power first. The list is empty if all coefficients were too small.
     #[inline]
-    #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.storage[MAX_COEFFICIENTS - usize::from(self.length)..]
     }
 
     /// Returns the value at `t`, see [`evaluate`].
     #[inline]
-    #[must_use]
     pub fn evaluate(&self, t: f64) -> f64 {
         evaluate(self.coefficients(), t)
     }
@@ -88,7 +84,6 @@ impl Polynomial {
 /// Returns the list without its small leading coefficients (root-finder.md 15.1, the dropping build; a NaN stops the
 /// dropping). The result may be empty.
 #[inline]
-#[must_use]
 pub fn trim(coefficients: &[f64]) -> &[f64] {
     let mut rest = coefficients;
     while let [first, others @ ..] = rest
@@ -107,7 +102,6 @@ fn is_small(leading: f64) -> bool {
 /// Returns the value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, which is not
 /// positive).
 #[inline]
-#[must_use]
 pub fn evaluate(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().fold(0.0, |value, &c| value * t + c)
 }

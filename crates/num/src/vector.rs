@@ -11,7 +11,6 @@ pub type Vec2 = Vector2<f64>;
 
 /// Returns `v / s`, evaluated like the original: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]
-#[must_use]
 pub fn divide(v: Vec2, s: f64) -> Vec2 {
     let reciprocal = 1.0 / s;
     Vec2::new(reciprocal * v.x, reciprocal * v.y)
@@ -19,14 +18,12 @@ pub fn divide(v: Vec2, s: f64) -> Vec2 {
 
 /// Returns the length `sqrt(x*x + y*y)`, without rescaling, so it overflows and underflows with the squares.
 #[inline]
-#[must_use]
 pub fn length(v: Vec2) -> f64 {
     (v.x * v.x + v.y * v.y).sqrt()
 }
 
 /// Returns `v` divided by its length, using the reciprocal. The zero vector gives NaN components (`0 * inf`).
 #[inline]
-#[must_use]
 pub fn unit(v: Vec2) -> Vec2 {
     let reciprocal = 1.0 / length(v);
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
@@ -34,21 +31,18 @@ pub fn unit(v: Vec2) -> Vec2 {
 
 /// Returns the positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with one column
 /// per particle, without copying.
-#[must_use]
 pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
     MatrixView2xX::from_slice(values, values.len() / 2)
 }
 
 /// Returns whether two lists are identical, bit for bit.
 #[inline]
-#[must_use]
 pub fn has_same_bits(one: &[f64], other: &[f64]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
 }
 
 /// Reads the vector of element `index` from an array in trace order (`x0, y0, x1, y1, ...`).
 #[inline]
-#[must_use]
 pub fn vector_at(array: &[f64], index: usize) -> Vec2 {
     Vec2::new(array[2 * index], array[2 * index + 1])
 }

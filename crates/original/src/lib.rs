@@ -110,7 +110,6 @@ pub trait Pictures {
 }
 
 /// Runs the replacement. `program` is the name in its messages, and `words` are the arguments.
-#[must_use]
 pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitCode {
     let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
     let code = match arguments::parse(program, &words) {

@@ -44,7 +44,6 @@ pub(crate) fn describe_incomplete(residuals: &Residuals) -> String {
 /// Returns the text of `residual.txt`. Each residual has a line with `1` or `0`, three spaces, and the value; in the
 /// contest, a line about collisions follows. If grading did not finish, the result is `None`, and the file is not
 /// written.
-#[must_use]
 pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {
     if outcome.parity.overall == Overall::None {
         return None;

@@ -26,7 +26,6 @@ impl Rgb {
     }
 
     /// Returns the apparent brightness, 0 to 255 (Rec. 709 weights).
-    #[must_use]
     pub fn brightness(self) -> u32 {
         let [red, green, blue] = self.0.map(u32::from);
         (2126 * red + 7152 * green + 722 * blue) / 10_000
@@ -39,7 +38,6 @@ impl Rgb {
     }
 
     /// Returns the color as `#rrggbb`.
-    #[must_use]
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0;
         format!("#{red:02x}{green:02x}{blue:02x}")

@@ -5,7 +5,6 @@ use fosssim_judge::study::Study;
 /// Returns a picture of a call's polynomials on the step, the intervals in which each and all are positive, and the
 /// time of impact. A different mathematically right approach polynomial is not shown, because the decision does not
 /// depend on it.
-#[must_use]
 pub fn render_picture(study: &Study, title: &str, embedding: PlotTarget) -> String {
     let curves = study.curves.iter().map(|curve| PlottedPolynomial {
         name: curve.role.to_string(),

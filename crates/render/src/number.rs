@@ -2,7 +2,6 @@
 
 /// Formats a number with at most six significant digits, without trailing zeros: `0.14`, `-1.5`, `1e-9`, `2.5e12`,
 /// `nan`.
-#[must_use]
 pub fn format_short(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "nan".to_owned() } else { format!("{value}") };
@@ -27,7 +26,6 @@ fn trim_zeros(text: &str) -> &str {
 }
 
 /// Formats a coordinate in pixels, with at most two decimals, never `-0`.
-#[must_use]
 pub fn format_pixel(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = trim_zeros(&text);
@@ -35,7 +33,6 @@ pub fn format_pixel(value: f64) -> String {
 }
 
 /// Returns the decades from the one at or below `least` to the one at or above `most`, as powers of ten.
-#[must_use]
 pub fn decade_range(least: f64, most: f64) -> (i32, i32) {
     #[expect(clippy::cast_possible_truncation, reason = "a logarithm of a finite double is below 400")]
     let power = |value: f64, round: fn(f64) -> f64| round(value.log10()).clamp(-400.0, 400.0) as i32;

@@ -58,7 +58,6 @@ struct Trail {
 
 impl Painter {
     /// Creates a painter whose pictures show all of `extent`, or the scene's own viewport.
-    #[must_use]
     pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
         // Later elements override earlier ones. Invalid indices are undefined behavior in the original, and color
@@ -97,19 +96,16 @@ impl Painter {
     }
 
     /// Returns the size of the pictures.
-    #[must_use]
     pub const fn size(&self) -> Size {
         self.view.size()
     }
 
     /// Returns the background color.
-    #[must_use]
     pub const fn background(&self) -> Rgb {
         self.background
     }
 
     /// Returns all colors in the pictures, the background first.
-    #[must_use]
     pub fn colors(&self) -> Vec<Rgb> {
         let mut colors = vec![self.background, self.background.contrasting_ink(), self.overlay_color()];
         colors.extend(self.trails.iter().map(|trail| trail.color));

@@ -26,20 +26,17 @@ impl Raster {
     ///
     /// # Panics
     /// Never panics, because a pixmap can have every [`Size`].
-    #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = Pixmap::new(size.width(), size.height()).expect("sizes are checked");
         Self { size, pixels }
     }
 
     /// Returns the size.
-    #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
     /// Returns red, green, blue and 255 of each pixel, row by row from the top.
-    #[must_use]
     pub fn rgba(&self) -> &[u8] {
         self.pixels.data()
     }

@@ -18,7 +18,6 @@ pub enum Paint {
 
 impl Paint {
     /// Returns the shape's color.
-    #[must_use]
     pub const fn color(self) -> Rgb {
         match self {
             Self::Solid(color) | Self::Faint(color, _) | Self::Dashed(color) => color,

@@ -38,19 +38,16 @@ impl Size {
     }
 
     /// Returns the width in pixels.
-    #[must_use]
     pub const fn width(self) -> u32 {
         self.width
     }
 
     /// Returns the height in pixels.
-    #[must_use]
     pub const fn height(self) -> u32 {
         self.height
     }
 
     /// Returns the number of pixels.
-    #[must_use]
     pub const fn pixels(self) -> usize {
         self.width as usize * self.height as usize
     }

@@ -8,7 +8,6 @@ use crate::{
 use std::fmt::Write;
 
 /// Returns a picture as an SVG document. `title` is for screen readers.
-#[must_use]
 pub fn render_document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());
     let mut svg = format!(
@@ -25,7 +24,6 @@ pub fn render_document(size: Size, background: Rgb, title: &str, shapes: &[Shape
 }
 
 /// Escapes a text for an element or attribute. Characters that XML does not allow are replaced.
-#[must_use]
 pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {

@@ -27,7 +27,6 @@ impl Default for Extent {
 
 impl Extent {
     /// Returns the box around a scene's particles at `positions`, in trace order.
-    #[must_use]
     pub fn for_scene(scene: &Scene, positions: &[f64]) -> Self {
         let mut extent = Self::default();
         extent.add(scene, positions);
@@ -66,7 +65,6 @@ impl Extent {
 
     /// Returns this box, limited to a few times the size of `start` around it, so that a body that flies away does not
     /// reduce the others to dots.
-    #[must_use]
     pub fn limit_to(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {
             return *self;
@@ -96,7 +94,6 @@ pub struct View {
 
 impl View {
     /// Returns the view of a scene: its own viewport, or the box of its bodies with a margin.
-    #[must_use]
     pub fn for_scene(scene: &Scene, extent: &Extent, size: Size) -> Self {
         match scene.display.viewport {
             // Zero and negative sizes mean that the view fits the scene.
@@ -121,20 +118,17 @@ impl View {
     }
 
     /// Returns the size of the picture.
-    #[must_use]
     pub const fn size(&self) -> Size {
         self.size
     }
 
     /// Returns a point of the plane in pixels, from the upper left corner.
-    #[must_use]
     pub fn to_pixels(&self, point: Vec2) -> [f64; 2] {
         let relative = self.scale * (point - self.center);
         [0.5 * f64::from(self.size.width()) + relative.x, 0.5 * f64::from(self.size.height()) - relative.y]
     }
 
     /// Returns a length in pixels.
-    #[must_use]
     pub fn to_pixel_length(&self, length: f64) -> f64 {
         self.scale * length
     }

@@ -29,7 +29,6 @@ const MAX_ROWS: usize = 8;
 /// Renders a scene's first step, which has the number `step` in the original run: the forces and the integrator if
 /// there are forces, then the detection passes and the responses. If a pair is named, its detection is shown
 /// completely. Returns `None` if the step has no result.
-#[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::OnDemand).step(&mut walk).ok()?;

@@ -3,13 +3,11 @@ use fosssim_judge::MissingResult;
 use fosssim_model::sim::{Pair, StepError};
 
 /// Returns a pair as text, in the form that `detect --pair` accepts.
-#[must_use]
 pub fn pair_key(pair: Pair) -> String {
     format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
 }
 
 /// Returns a sentence about a step whose computation has no result.
-#[must_use]
 pub fn no_result(error: &StepError) -> String {
     format!("step {} has no result, because {}", error.step(), MissingResult(*error))
 }

@@ -56,7 +56,6 @@ pub struct Detect<'a> {
 
 impl Detect<'_> {
     /// Returns one line that says what the report is about.
-    #[must_use]
     pub fn title(&self) -> String {
         let Some(place) = &self.place else {
             return match self.study.motion {
@@ -69,7 +68,6 @@ impl Detect<'_> {
     }
 
     /// Returns the decision as a sentence. `number` formats the numbers in it.
-    #[must_use]
     pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
         let time = number(answer.decision.time());
@@ -92,7 +90,6 @@ impl Detect<'_> {
     }
 
     /// Renders the report for people.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         let study = self.study;
         let mut text = style.paint(TextStyle::Strong, &self.title()) + "\n";
@@ -172,7 +169,6 @@ impl Detect<'_> {
     }
 
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
-    #[must_use]
     pub fn json(&self) -> String {
         let study = self.study;
         let view = DetectView {

@@ -33,13 +33,11 @@ pub struct Diagnosis {
 
 impl Diagnosis {
     /// Returns whether the fair rules accept every trace.
-    #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.cases.iter().all(|case| case.accepted)
     }
 
     /// Renders the report for people.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         let smallest: String = self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, style))).collect();
         match &self.cases[..] {
@@ -93,7 +91,6 @@ impl Diagnosis {
     }
 
     /// Renders the report for programs.
-    #[must_use]
     pub fn json(&self) -> String {
         to_document(&DiagnosisView::from(self))
     }

@@ -16,14 +16,12 @@ const MAX_LISTED: usize = 3;
 
 /// Returns the lines of a report about explanations, the likeliest first. Lines that belong to a sentence are below it
 /// and indented by two blanks.
-#[must_use]
 pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
 /// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
 /// formats with a single line.
-#[must_use]
 pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
         return Some(describe(first));

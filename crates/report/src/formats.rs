@@ -28,19 +28,16 @@ macro_rules! formats {
             pub const ALL: &'static [Self] = &[$(Self::$format),+];
 
             /// Returns the format's name on the command line.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$format => $name,)+ }
             }
 
             /// Returns whether one document can hold the grades of several submissions.
-            #[must_use]
             pub const fn takes_several(self) -> bool {
                 match self { $(Self::$format => $takes_several,)+ }
             }
 
             /// Renders the document like [`Format::render`], and lists the skipped entries in it.
-            #[must_use]
             pub fn render_class(self, grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
                 let render: fn(&[Grade], &[SkippedEntry]) -> String = match self { $(Self::$format => $render,)+ };
                 render(grades, passed_over)
@@ -98,19 +95,16 @@ fn class_entries<'e>(grades: &[Grade], passed_over: &'e [SkippedEntry]) -> &'e [
 impl Format {
     /// Renders the grades as one document. Formats that hold only one grade ([`Format::takes_several`]) render the
     /// first.
-    #[must_use]
     pub fn render(self, grades: &[Grade]) -> String {
         self.render_class(grades, &[])
     }
 
     /// Returns the format with this name.
-    #[must_use]
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
     /// Returns the names of the formats that `wanted` selects, as a list such as `text, json or csv`.
-    #[must_use]
     pub fn names(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
         let names: Vec<&str> = wanted.map(Self::name).collect();
@@ -123,7 +117,6 @@ impl Format {
     /// Returns the part of a grade that a document for `reader` contains. Reports for students leave out the groups
     /// that students do not see immediately, unless the platform that requests them hides the groups itself
     /// (`platform_hides`).
-    #[must_use]
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
             // These formats are always for students. The platforms and the page hide the hidden groups themselves.

@@ -6,7 +6,6 @@
 /// let line = "t^2 lacks -4 e h, with e = d21.x21.";
 /// assert_eq!(fosssim_report::formula::to_mathematical_signs(line), "t² lacks −4 e h, with e = Δx₂₁·x₂₁.");
 /// ```
-#[must_use]
 pub fn to_mathematical_signs(line: &str) -> String {
     let mut out = String::with_capacity(line.len());
     let mut rest = line;

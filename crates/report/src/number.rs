@@ -6,7 +6,6 @@
 pub use fosssim_num::number_format::format_g;
 
 /// Formats a number as the shortest text that reads back as the same number. A zero has no sign.
-#[must_use]
 pub fn format_exact(value: f64) -> String {
     fosssim_num::number_format::format_exact(value + 0.0)
 }
@@ -39,7 +38,6 @@ pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
 }
 
 /// Formats a count with separated thousands, such as `1 234 567`. Four digits are not separated.
-#[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
     if digits.len() < 5 {
@@ -56,7 +54,6 @@ pub fn count(value: u64) -> String {
 }
 
 /// Formats a count and its noun, such as `1 step` or `12 345 steps`.
-#[must_use]
 pub fn format_count(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", count(value))
@@ -64,7 +61,6 @@ pub fn format_count(value: u64, noun: &str) -> String {
 
 /// Formats two values in the same notation, as short as a comparison allows: with six digits, but at least two digits
 /// from the first that differs. Also returns the position from which the texts differ; `None` if they are equal.
-#[must_use]
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = format_alike(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());

@@ -11,7 +11,6 @@ const MAX_SHOWN_BYTES: usize = 4 * MAX_SHOWN_CHARS + 8;
 /// Renders the problems of a rejected scene: a first line, and then each problem with its line of the file.
 ///
 /// `name` is the scene's name in messages, and `source` is the content of its file.
-#[must_use]
 pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
     let count = refused.list.iter().filter(|problem| problem.severity == Severity::Error).count();
     let plural = if count == 1 { "error" } else { "errors" };
@@ -26,7 +25,6 @@ pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
 }
 
 /// Renders the warnings about an accepted scene; empty if there are none.
-#[must_use]
 pub fn render_warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
     list.iter().map(|problem| render_problem(name, source, problem) + "\n").collect()
 }

@@ -5,7 +5,6 @@ use serde_json::Value;
 
 /// Returns the schemas. Each has the name of the command that writes such documents, and is stored as
 /// `<command>.schema.json` in the folder `schemas`.
-#[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
     [
         ("check", command_schema::<CheckView<'_>>("check --format json")),

@@ -30,7 +30,6 @@ pub struct SimulationSummary<'a> {
 
 impl SimulationSummary<'_> {
     /// Renders the report for people.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         let counts = &self.counts;
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
@@ -76,7 +75,6 @@ impl SimulationSummary<'_> {
     }
 
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
-    #[must_use]
     pub fn json(&self) -> String {
         let counts = &self.counts;
         let calls: serde_json::Map<_, _> = counts

@@ -20,7 +20,6 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 }
 
 /// Renders the report for people.
-#[must_use]
 pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));

@@ -1,7 +1,6 @@
 //! Describes how many steps are right or wrong, in words that all reports use.
 
 /// Returns text such as `all 15 steps are right` or `the only step is right`. `count` formats numbers.
-#[must_use]
 pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
         0 => "there are no steps, so no step can be wrong".to_owned(),
@@ -12,7 +11,6 @@ pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
 
 /// Returns text such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong` or `the only step is wrong`. `count`
 /// formats numbers.
-#[must_use]
 pub fn describe_wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
     match (wrong, steps) {
         (1, 1) => "the only step is wrong".to_owned(),

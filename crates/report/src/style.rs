@@ -30,7 +30,6 @@ pub enum TextStyle {
 
 impl Style {
     /// Returns a text with the terminal codes for its color. Padding must be added before this call.
-    #[must_use]
     pub fn paint(self, look: TextStyle, text: &str) -> String {
         let code = match (self, look) {
             (Self::Plain, _) => return text.to_owned(),

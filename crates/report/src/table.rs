@@ -42,7 +42,6 @@ pub struct Table<const COLUMNS: usize> {
 
 impl<const COLUMNS: usize> Table<COLUMNS> {
     /// Creates a table without rows. `columns` has the alignment of each column.
-    #[must_use]
     pub const fn new(columns: [Align; COLUMNS]) -> Self {
         Self { columns, rows: Vec::new() }
     }
@@ -59,7 +58,6 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
 
     /// Renders each row as a line, indented by two blanks. There are three blanks between columns, and none at the ends
     /// of lines.
-    #[must_use]
     pub fn render(&self, style: Style) -> String {
         let width =
             |column: usize| self.rows.iter().map(|row| count_columns(&row[column].text)).max().unwrap_or_default();

@@ -5,7 +5,6 @@ use std::borrow::Cow;
 
 /// Removes the terminal codes for colors, cursors and titles, which every line of FOSSSim's log contains. Only complete
 /// codes are removed, so that incomplete ones become visible.
-#[must_use]
 pub(crate) fn remove_escape_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
     if !text.contains(ESCAPE) {
@@ -50,13 +49,11 @@ fn escape_code_length(code: &str) -> Option<usize> {
 
 /// Returns a program's output without terminal codes and without other control characters, as
 /// [`strip_control_characters`] does. In names, codes are not removed, because two names could then look the same.
-#[must_use]
 pub fn clean_output(text: &str) -> String {
     strip_control_characters(&remove_escape_codes(text))
 }
 
 /// Quotes a word for a shell, if necessary.
-#[must_use]
 pub fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {
@@ -74,7 +71,6 @@ pub(crate) const fn is_invisible(c: char) -> bool {
 
 /// Returns untrusted text without control characters. Escape codes, bells and NULs are replaced by visible characters,
 /// and so are invisible characters and characters that XML 1.0 forbids. Line breaks and tabs are kept.
-#[must_use]
 pub fn strip_control_characters(text: &str) -> String {
     // Most texts are clean, and a class has tens of thousands of them.
     if is_visible_ascii(text) {
@@ -95,7 +91,6 @@ pub fn strip_control_characters(text: &str) -> String {
 }
 
 /// Returns the text of [`strip_control_characters`] as a single line.
-#[must_use]
 pub fn to_one_line(text: &str) -> String {
     strip_control_characters(text).replace(['\n', '\t'], " ")
 }

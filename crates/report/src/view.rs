@@ -42,7 +42,6 @@ pub const SCHEMA: u32 = 1;
 pub const CHECK_SCHEMA: u32 = 2;
 
 /// Returns the text that stands for a value in JSON, for use in other formats; empty for a value with fields.
-#[must_use]
 pub fn to_key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
     written.as_str().unwrap_or_default().to_owned()
@@ -55,7 +54,6 @@ pub(crate) fn to_document(value: &impl Serialize) -> String {
 }
 
 /// Converts several numbers for JSON.
-#[must_use]
 pub fn numbers(values: &[f64]) -> Vec<WrittenNumber> {
     values.iter().copied().map(WrittenNumber).collect()
 }
@@ -131,7 +129,6 @@ pub struct FindingView {
 }
 
 /// Returns the largest distance that the original accepts for this kind of finding; `None` if the kind has no distance.
-#[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT_DIFFERENCE, PARITY_MAX_RESIDUAL, PARITY_NORMAL_DISTANCE};
     match kind {
@@ -145,7 +142,6 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 impl FindingView {
     /// Creates the view of a finding by a rule book. For the fair rules, the tolerance is null, because it depends on
     /// the values.
-    #[must_use]
     pub fn from_finding(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);
         let (expected, actual, residual) = compare_values(detail);

@@ -26,7 +26,6 @@ pub const STATES_ONLY: &str =
 const NOT_FOUND_CODE: i32 = 127;
 
 /// Describes the result of a scene in one sentence.
-#[must_use]
 pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
         Reason::Right => step_share::describe_right(result.steps, spell_number),
@@ -58,7 +57,6 @@ pub(crate) fn describe_ending(result: &SceneResult) -> String {
 
 /// Returns further lines about a scene: the first difference, the counts of findings, any damage, and the file of the
 /// trace.
-#[must_use]
 pub fn list_details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
     if result.ended == Some(RunEnd::Exited(NOT_FOUND_CODE)) {
@@ -93,7 +91,6 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
 
 /// Describes why the whole submission could not be graded as usual, which applies to each of its scenes; `None` if it
 /// could.
-#[must_use]
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.submission_fault().map(|unfit| match unfit {
         SubmissionFault::Build(end) => build(end),
@@ -120,7 +117,6 @@ fn describe_unwritten(grade: &Grade) -> String {
 }
 
 /// Describes in one sentence why a grade is not fully accepted; `None` if it is.
-#[must_use]
 pub fn describe_reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
         return Some(unfit);
@@ -133,7 +129,6 @@ pub fn describe_reason(grade: &Grade) -> Option<String> {
 }
 
 /// Describes how a build ended.
-#[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
         BuildEnd::Success => "the build succeeded".to_owned(),

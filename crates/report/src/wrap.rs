@@ -10,7 +10,6 @@ use unicode_width::UnicodeWidthChar;
 const MIN_LAST_COLUMN: usize = 30;
 
 /// Breaks lines so that they are no wider than `width`, if their words allow it.
-#[must_use]
 pub fn wrap(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
@@ -22,7 +21,6 @@ pub fn wrap(text: &str, width: usize) -> String {
 }
 
 /// Returns the width of a text in columns. Color codes have no width.
-#[must_use]
 pub fn count_columns(text: &str) -> usize {
     let mut inside_code = false;
     text.chars()

@@ -38,13 +38,11 @@ pub struct Supervisor {
 
 impl Supervisor {
     /// Returns the current program, even if its file has been replaced or removed since it was started.
-    #[must_use]
     pub fn this_program() -> Self {
         Self { program: "/proc/self/exe".into() }
     }
 
     /// Returns another program instead of the current one, for tests.
-    #[must_use]
     pub fn from_path(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into() }
     }
@@ -239,32 +237,27 @@ impl Backend {
     }
 
     /// Returns whether all layers that are required on this host work.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.layers.iter().all(|report| report.active || !report.required)
     }
 
     /// Returns one line for each required layer that does not work. There are no lines if the sandbox is complete.
-    #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
         layers::describe_missing(&self.layers)
     }
 
     /// Returns a backend that runs nothing. Its results come from a script, for tests of code that uses the sandbox.
-    #[must_use]
     pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
         Self { kind: BackendKind::Fake(Arc::new(script)), layers: layers::no_layers() }
     }
 
     /// Returns reports on all layers, active or not.
-    #[must_use]
     pub fn layers(&self) -> &[LayerReport] {
         &self.layers
     }
 
     /// Returns the reason why a file cannot be started at all, according to its first bytes; `None` if starting it may
     /// work.
-    #[must_use]
     pub fn start_problem(&self, program: &Path) -> Option<StartProblem> {
         match &self.kind {
             BackendKind::Launcher { supervisor, .. } => program::examine(program, &supervisor.own_files()).err(),

@@ -30,13 +30,11 @@ pub struct FakeRun {
 
 impl FakeRun {
     /// Returns a run that ended with `ended` and wrote nothing at all.
-    #[must_use]
     pub fn with_end(ended: RunEnd) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
     /// Returns a run that exited with code 0 after writing `trace`.
-    #[must_use]
     pub fn with_trace(trace: impl Into<Vec<u8>>) -> Self {
         Self { trace: trace.into(), ..Self::with_end(RunEnd::Exited(0)) }
     }

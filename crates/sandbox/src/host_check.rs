@@ -9,7 +9,6 @@ use super::{
 ///
 /// The program's `main` must begin with a call of [`supervisor_main`](super::supervisor_main). If the supervisor does
 /// not start, every layer is reported as missing for that reason.
-#[must_use]
 pub fn check_host() -> Vec<LayerReport> {
     match Supervisor::this_program().probe() {
         Ok(probe) => reports(&probe),

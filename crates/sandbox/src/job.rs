@@ -69,7 +69,6 @@ pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
     /// Returns the identity of the regular file at the path. Links are followed. `None` if there is no such file.
-    #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
         let (device, inode) = (metadata.dev().cast_signed(), metadata.ino().cast_signed());
@@ -100,7 +99,6 @@ impl Job {
     /// Creates a job that runs `program` in the existing working folder `folder`, which the program may change freely.
     ///
     /// Standard input is empty. A relative `program` is resolved from the grader's current folder, never from `PATH`.
-    #[must_use]
     pub fn new(program: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Self {
         Self {
             program: program.into(),

@@ -19,7 +19,6 @@ macro_rules! layers {
             pub const ALL: [Self; [$(Self::$layer),+].len()] = [$(Self::$layer),+];
 
             /// Returns the layer's name in reports.
-            #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$layer => $name,)+ }
             }

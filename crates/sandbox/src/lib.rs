@@ -75,7 +75,6 @@ pub enum ProcessorTimeScope {
 }
 
 /// Returns the processor time of these processes, in user mode and in the kernel together.
-#[must_use]
 pub fn processor_time(of: ProcessorTimeScope) -> std::time::Duration {
     match of {
         ProcessorTimeScope::Thread => sys::processor_time(true),

@@ -68,13 +68,11 @@ impl RunningProgram {
 
     /// Returns whether the program works in a copy of its working folder in memory. The folder on disk then does not
     /// change.
-    #[must_use]
     pub fn is_in_memory(&self) -> bool {
         self.folder.in_memory.is_some()
     }
 
     /// Returns a handle that stops the program. It can be used in other threads, and on Ctrl-C.
-    #[must_use]
     pub fn canceller(&self) -> Canceller {
         self.canceller.clone()
     }
@@ -155,7 +153,6 @@ pub struct RemainingFolder {
 impl RemainingFolder {
     /// Returns the folder, if the program worked in a copy in memory
     /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise the files are in the job's folder on disk.
-    #[must_use]
     pub fn in_memory(&self) -> Option<&OpenFolder> {
         self.in_memory.as_ref()
     }

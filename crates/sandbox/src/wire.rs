@@ -237,7 +237,6 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
 /// Reads as many messages of each kind as the bytes contain, for the fuzz target. Panics if a message differs after it
 /// was sent again. Returns the number of messages.
 #[doc(hidden)]
-#[must_use]
 pub fn read_messages(bytes: &[u8]) -> usize {
     fn all<T: Serialize + DeserializeOwned + PartialEq + std::fmt::Debug>(mut bytes: &[u8]) -> usize {
         let mut count = 0;

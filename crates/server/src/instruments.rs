@@ -50,7 +50,6 @@ impl Instruments {
     }
 
     /// Counts a request as active until the returned value is dropped.
-    #[must_use]
     pub fn begin(&self) -> InFlight {
         self.in_flight.inc();
         InFlight(self.in_flight.clone())

@@ -39,7 +39,6 @@ pub enum WrongReason {
 
 impl WrongReason {
     /// Returns the reason of a program that does not end well.
-    #[must_use]
     pub fn from_end(ended: &RunEnd) -> Option<Self> {
         let signal = if let RunEnd::Signalled(signal) = ended { Some(*signal) } else { None };
         FailureKind::from_end(ended).map(|failure| Self::Ended(failure, signal))
@@ -47,7 +46,6 @@ impl WrongReason {
 
     /// Returns the reason why a program is wrong on a scene, or `None` if it is right, or if only round-off decides
     /// that.
-    #[must_use]
     pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
         let (fault, detail) = find_reason(scene, seen)?;
         let Some(detail) = detail else { return Some(fault) };
@@ -63,7 +61,6 @@ impl WrongReason {
     /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
     /// is the named mistake, and not by a decision that round-off may change. With `is_alone`, the reason must be the
     /// first one that the scene shows, without other mistakes that have the same effect.
-    #[must_use]
     pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, seen) else { return false };
         let explanations = || diagnose::explain(scene, &seen.trace);

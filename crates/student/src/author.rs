@@ -68,7 +68,6 @@ impl Student {
     }
 
     /// Returns whether the student uses the mathematically right particle-edge approach instead of the supplied one.
-    #[must_use]
     pub fn has_right_approach(&self) -> bool {
         self.right_approach || self.makes(Mistake::QuinticRightRearranged)
     }

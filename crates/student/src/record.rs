@@ -32,7 +32,6 @@ pub struct Record {
 
 impl Record {
     /// Creates the record that a student writes in a scene of this collision type.
-    #[must_use]
     pub fn new(student: Student, collision: &Collision, state: &State, log: &StepLog) -> Self {
         let has_polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
         let has_impulses = has_polynomials || matches!(collision, Collision::Simple { .. });

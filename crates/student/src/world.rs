@@ -62,7 +62,6 @@ impl World {
     }
 
     /// Returns the world for another student's program.
-    #[must_use]
     pub fn for_student(&self, student: Student) -> Self {
         Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses) }
     }

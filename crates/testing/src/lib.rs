@@ -86,7 +86,6 @@ const NAMES: [(Need, &str); 20] = [
 
 impl Need {
     /// Returns the need's name in `FOSSSIM_REQUIRE`.
-    #[must_use]
     pub fn name(self) -> &'static str {
         NAMES.iter().find(|(need, _)| *need == self).map_or("", |(_, name)| name)
     }
@@ -133,7 +132,6 @@ fn check_allowed(need: Need, required: &str) -> Result<(), String> {
 
 /// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
 /// get a list only if one is set.
-#[must_use]
 pub fn list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
         return Some(list.into());
@@ -143,7 +141,6 @@ pub fn list() -> Option<PathBuf> {
 }
 
 /// Returns the list in few lines, by need: how many tests, and why.
-#[must_use]
 pub fn summary(list: &str) -> String {
     let mut lines = String::new();
     let mut total = 0;

@@ -355,7 +355,6 @@ fosssim_num::closed_set! {
 
 impl StageFault {
     /// Returns the stage of the step in which the fault is.
-    #[must_use]
     pub const fn stage(&self) -> StepStage {
         match self {
             Self::Order | Self::Decisions { .. } | Self::ContactTimes | Self::Overlaps { .. } => StepStage::Detection,
@@ -378,7 +377,6 @@ impl StageFault {
     }
 
     /// Returns the parts of the assignment in which the mistake may be.
-    #[must_use]
     pub const fn areas(&self) -> &'static [Area] {
         match self {
             Self::Order | Self::Decisions { .. } | Self::ContactTimes => &[Area::Decision],
@@ -426,7 +424,6 @@ impl StageFault {
     }
 
     /// Returns the kind of pair; `None` if the fault concerns several kinds.
-    #[must_use]
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
             Self::Decisions { kind, .. }

@@ -24,19 +24,16 @@ pub enum Guess {
 impl Guess {
     /// Returns the key of the guess as [`Explanation::claims`](super::Explanation::claims) contain it. It is a digest,
     /// because the key itself may name a formula.
-    #[must_use]
     pub fn claim_key(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
     /// Returns whether the guess can be the same mistake in several polynomials.
-    #[must_use]
     pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Named(_))
     }
 
     /// Returns the key of an explanation with this guess.
-    #[must_use]
     pub fn key(&self) -> &str {
         match self {
             Self::List(guess) => guess.name(),
@@ -48,7 +45,6 @@ impl Guess {
 }
 
 /// Returns a digest of a text (FNV-1a), which is the same on every machine.
-#[must_use]
 pub fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }

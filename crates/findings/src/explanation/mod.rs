@@ -86,7 +86,6 @@ impl Explanation {
     pub const MISSING_POLYNOMIALS: &'static str = "missing-polynomials";
 
     /// Returns whether a key can belong to an explanation that names no known mistake.
-    #[must_use]
     pub fn is_general_key(key: &str) -> bool {
         let constants = [
             Self::OTHER_SCENE,
@@ -105,7 +104,6 @@ impl Explanation {
     }
 
     /// Creates an explanation that has no evidence yet.
-    #[must_use]
     pub fn with_topic(key: impl Into<String>, about: ExplanationTopic) -> Self {
         Self {
             key: key.into(),
@@ -122,57 +120,48 @@ impl Explanation {
 
     /// Creates the explanation that a trace probably belongs to another scene. `has_length` tells whether the trace has
     /// the right number of records.
-    #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
         Self::with_topic(Self::OTHER_SCENE, ExplanationTopic::Scene { has_length })
     }
 
     /// Creates an explanation of wrong polynomials that has no exact form.
-    #[must_use]
     pub fn for_wrong_polynomials(subjects: Vec<Subject>, found: PolynomialEvidence) -> Self {
         Self::with_topic(Self::UNEXPLAINED, ExplanationTopic::Polynomials { subjects, found })
     }
 
     /// Returns whether the explanation is that the trace probably belongs to another scene.
-    #[must_use]
     pub fn is_other_scene(&self) -> bool {
         matches!(self.topic, ExplanationTopic::Scene { .. })
     }
 
     /// Returns whether the explanation reports the first value that is not finite. All levels of hints show it, except
     /// for the lowest.
-    #[must_use]
     pub const fn is_not_finite(&self) -> bool {
         matches!(self.topic, ExplanationTopic::NotFinite(_))
     }
 
     /// Returns whether the explanation is a known mistake that reproduces every sample.
-    #[must_use]
     pub fn is_proven(&self) -> bool {
         self.topic == ExplanationTopic::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
     /// Returns whether the explanation names stages that are not written.
-    #[must_use]
     pub fn is_unfinished(&self) -> bool {
         self.topic == ExplanationTopic::Unfinished
     }
 
     /// Returns whether the explanation only says that polynomials are wrong.
-    #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.key == Self::UNEXPLAINED
     }
 
     /// Returns whether the explanation reports polynomials that are not passed to the root finder.
-    #[must_use]
     pub fn reports_missing_polynomials(&self) -> bool {
         matches!(self.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Missing, .. })
     }
 
     /// Returns a key for the explanation's sentence. Explanations have the same key if and only if they have the same
     /// sentence.
-    #[must_use]
     pub fn statement(&self) -> String {
         match &self.topic {
             ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(guess), .. } if guess.is_general() => {
@@ -188,7 +177,6 @@ impl Explanation {
     }
 
     /// Returns the wrong polynomials that the explanation is about; empty if it is about something else.
-    #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
         if let ExplanationTopic::Polynomials { subjects, .. } = &self.topic {
             return subjects.clone();
@@ -199,7 +187,6 @@ impl Explanation {
     }
 
     /// Groups the claims by polynomial. For each claim, the result has its guess or known mistake, and the whole word.
-    #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
         // A guess that reproduces only a part explains no polynomial completely.
@@ -217,13 +204,11 @@ impl Explanation {
     }
 
     /// Returns whether the explanation names a wrong stage of a step. That is an observation, not a guess.
-    #[must_use]
     pub fn names_stage(&self) -> bool {
         self.stage().is_some()
     }
 
     /// Returns whether the explanation only says that a stage is wrong.
-    #[must_use]
     pub const fn is_vague(&self) -> bool {
         matches!(
             self.topic,
@@ -232,7 +217,6 @@ impl Explanation {
     }
 
     /// Returns the stage of a step that is wrong, if the explanation names one.
-    #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
         match &self.topic {
             ExplanationTopic::Stage(fault) => Some(fault.stage()),
@@ -241,14 +225,12 @@ impl Explanation {
     }
 
     /// Returns whether the explanation reproduces every sample.
-    #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
     }
 
     /// Returns whether the explanation is about the program, and not about this trace alone. Other traces may then
     /// confirm it.
-    #[must_use]
     pub fn is_about_program(&self) -> bool {
         use PolynomialEvidence::{NearlyRight, Nothing};
         let is_nothing = matches!(self.topic, ExplanationTopic::Polynomials { found: Nothing | NearlyRight, .. });
@@ -256,7 +238,6 @@ impl Explanation {
     }
 
     /// Returns whether the explanation covers all of its polynomials or stages.
-    #[must_use]
     pub fn is_exhaustive(&self) -> bool {
         self.is_complete() || self.names_stage()
     }

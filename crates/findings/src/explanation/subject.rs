@@ -27,7 +27,6 @@ fosssim_num::closed_set! {
 
 impl Subject {
     /// Returns the polynomials of one kind of pair, in the order of the trace.
-    #[must_use]
     pub const fn all_of_kind(kind: PairKind) -> &'static [Self] {
         match kind {
             PairKind::ParticleParticle => &[Self::ParticleOverlap, Self::ParticleApproach],
@@ -37,7 +36,6 @@ impl Subject {
     }
 
     /// Returns the kind of pair that the polynomial belongs to.
-    #[must_use]
     pub const fn kind(self) -> PairKind {
         match self {
             Self::ParticleOverlap | Self::ParticleApproach => PairKind::ParticleParticle,
@@ -47,7 +45,6 @@ impl Subject {
     }
 
     /// Returns the degree of the polynomial.
-    #[must_use]
     pub const fn degree(self) -> usize {
         match self {
             Self::ParticleApproach | Self::HalfPlaneApproach => 1,

@@ -37,7 +37,6 @@ pub enum ExplanationTopic {
 
 impl ExplanationTopic {
     /// Returns the kinds of pairs that the wrong polynomials belong to. Each kind is listed once.
-    #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
         let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
         PairKind::ALL.into_iter().filter(|kind| subjects.iter().any(|subject| subject.kind() == *kind)).collect()

@@ -13,7 +13,6 @@ const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
 
 /// Returns a suite file with comments, as a starting point. It has the settings of the template, and the groups of a
 /// built-in suite.
-#[must_use]
 pub fn suite_template(name: &str) -> Option<String> {
     let (assignment, SuiteVersion { suite, .. }) = find_version(name)?;
     let groups = suite.split_once("rules = \"fair\"\n")?.1.trim_start();
@@ -33,7 +32,6 @@ pub struct SuiteVersion {
 
 impl SuiteVersion {
     /// Returns whether the version contains a scene of its assignment.
-    #[must_use]
     pub fn has_scene(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
     }
@@ -59,7 +57,6 @@ macro_rules! two_versions {
 }
 
 /// Returns the versions of an assignment's suite, the oldest first.
-#[must_use]
 pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
     match assignment {
         Assignment::T1M1 => &two_versions!("t1m1"),
@@ -73,7 +70,6 @@ pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
 
 /// Returns the assignment and the version that a suite name means, such as `t2m2@1`. `t2m2` means the newest version.
 /// Upper and lower case are the same.
-#[must_use]
 pub fn find_version(name: &str) -> Option<(Assignment, SuiteVersion)> {
     if matches!(name, "earlier" | "earlier@1") {
         return Some((Assignment::T2M1, EARLIER_VERSION));
@@ -97,14 +93,12 @@ pub fn suite_names() -> impl Iterator<Item = String> {
 }
 
 /// Returns the end of a message about an unknown suite, as [`suggestions::suggest`] does.
-#[must_use]
 pub fn suggest(name: &str) -> String {
     let known: Vec<String> = suite_names().collect();
     suggestions::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
 }
 
 /// Returns the name of the default suite.
-#[must_use]
 pub fn default_name() -> String {
     format!("{}@{}", Assignment::DEFAULT.key(), versions(Assignment::DEFAULT).len())
 }

@@ -60,7 +60,6 @@ impl Pairing {
     }
 
     /// Describes both values, such as `fixed: the first, time: start of the step`.
-    #[must_use]
     pub fn describe(self) -> String {
         let value = |(axis, value): (usize, usize)| {
             let axis = &FAMILIES[self.family].axes[axis];
@@ -101,13 +100,11 @@ impl Coverage {
     }
 
     /// Returns whether no event has been recorded.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.pairings.is_empty()
     }
 
     /// Returns whether any event has both values.
-    #[must_use]
     pub fn contains(&self, pairing: Pairing) -> bool {
         self.pairings.contains(&pairing)
     }
@@ -123,7 +120,6 @@ impl Coverage {
     }
 
     /// Returns how many pairs of values occur for a kind of event, and how many are possible.
-    #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {
         let all = || Pairing::all().filter(|pairing| pairing.family == family);
         (all().filter(|pairing| self.contains(*pairing)).count(), all().count())

@@ -10,7 +10,6 @@ use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
 /// Returns the reason why the two rule books differ about a trace, or `None` if they agree or one of them has no
 /// verdict.
-#[must_use]
 pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
     match (outcome.parity.overall, fair.verdict) {

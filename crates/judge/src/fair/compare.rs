@@ -407,7 +407,7 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 /// divide polynomials.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
     let norm = bound_sum(expected);
-    if !(norm > 0.0 && norm.is_finite()) || !is_round_off(expected) {
+    if !(norm > 0.0 && norm.is_finite() && is_round_off(expected)) {
         return None;
     }
     // As much as counts as round-off of the expected polynomial, and the rounding errors of both sides.

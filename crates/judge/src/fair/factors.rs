@@ -62,7 +62,6 @@ impl Factors {
     }
 
     /// Returns the smallest and the largest factor, or `None` if there are no factors.
-    #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         (self.count > 0).then_some([self.least, self.greatest])
     }

@@ -13,7 +13,7 @@
 //!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace shows. NaN
 //!    fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by
-//! [`FAIR_SENSITIVITY_FACTOR`]    times the effect of such roundings of the step's input on its result.
+//!    [`FAIR_SENSITIVITY_FACTOR`] times the effect of such roundings of the step's input on its result.
 //! 4. A decision that such roundings can change is borderline: it is followed and noted, never counted as wrong.
 //!    However, the place and the time of a collision must be right. Coefficients that were lost because of a factor do
 //!    not count as round-off: decisions and times of impact are compared with those of the whole polynomials.

@@ -46,7 +46,6 @@ impl NearPair {
 
 /// Returns how often a step from `before` applied the force of each nearby pair: never, once or twice. The reference's
 /// step ends in `own`. Pairs whose velocities do not show the number are left out.
-#[must_use]
 pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
     let tolerances = Tolerances::from_context(&context, own, None);

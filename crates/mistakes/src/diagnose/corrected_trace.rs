@@ -16,7 +16,6 @@ pub struct CorrectedTrace {
 /// ([`explain_together`](super::explain_together)). If one of the common explanations applies to the trace, they
 /// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
 /// without those that are `refuted`.
-#[must_use]
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreement(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();

@@ -82,7 +82,6 @@ fn is_contradicted(key: &str, wrong: &[(&Scene, &[Explanation])], refuted: &[Str
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.
-#[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
     let is_asked = |scene: &Scene, key: &str| {

@@ -30,13 +30,11 @@ const MAX_PAIRS: usize = 400_000;
 /// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
 /// content are accepted. Bytes after the first 64 MiB are ignored, and so is an incomplete record. A trace of another
 /// scene yields only the question whether it belongs to this one ([`Explanation::is_other_scene`]).
-#[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))
 }
 
 /// Explains the kept part of a trace, like [`explain`].
-#[must_use]
 pub fn explain_kept_trace(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }

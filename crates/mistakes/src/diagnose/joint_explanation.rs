@@ -25,7 +25,6 @@ const MANY_TRACES: usize = 8;
 /// contradict. The first value that is not finite does not count, and comes last, because it follows from the others.
 ///
 /// A single scene often cannot distinguish mistakes; several together nearly always can.
-#[must_use]
 pub fn explain_together<'a>(
     traces: impl IntoIterator<Item = &'a [Explanation]>,
     refuted: &[String],

@@ -17,7 +17,6 @@ pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>)
 
 /// Returns whether a trace's explanations name a mistake, either as reported or as indistinguishable. For unwritten
 /// work, one stage is enough.
-#[must_use]
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
         let is_stage = |key: &String| mistake.same_as.contains(key);

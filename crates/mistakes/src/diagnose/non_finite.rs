@@ -18,7 +18,6 @@ use fosssim_model::{
 
 /// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. It is empty
 /// if all values are finite, or if the reference has the same values.
-#[must_use]
 pub fn explain_not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }

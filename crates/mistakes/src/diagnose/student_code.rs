@@ -8,7 +8,6 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 
 /// Returns whether a student of this milestone writes the code of the mistake, or submits its file. Every student can
 /// change the trace's contents, and the end of the program.
-#[must_use]
 pub fn is_written_by_student(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
         (Area::Trace | Area::Process, _) | (Area::NearPairs, Part::NearPairs) => true,
@@ -43,7 +42,6 @@ pub(super) fn changed_term(row: &Row) -> Term {
 }
 
 /// Returns the milestone of a submission that runs on `scenes`: the first whose programs know all of them.
-#[must_use]
 pub fn find_milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();
     let common = scenes

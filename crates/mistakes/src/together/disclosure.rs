@@ -23,7 +23,6 @@ pub fn limit_result(hints: Hints, result: &mut SceneResult) {
 }
 
 /// Limits a smallest scene to a hint level. At [`Hints::None`] nothing is left, and the result is `None`.
-#[must_use]
 pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = limit_explanations(hints, std::mem::take(&mut small.explanations));
     small.limit_to_hints(hints);
@@ -34,7 +33,6 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 /// is one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each has a sentence
 /// without formulas, and the known mistakes that cannot be distinguished from it; exact forms and examples need
 /// [`Hints::Full`].
-#[must_use]
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),

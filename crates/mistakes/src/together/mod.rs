@@ -14,7 +14,6 @@ pub mod disclosure;
 
 /// Returns the grade with only the scene details that hints allow for students, and without information about other
 /// submissions. Groups that students do not see are included.
-#[must_use]
 pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
     let is_all_disclosed = grade.groups.iter().all(|group| group.hints == Hints::Full);
     if is_all_disclosed && grade.same_program.is_empty() && grade.smallest.is_empty() {
@@ -39,7 +38,6 @@ pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
 /// Returns only the part of the grade that students see immediately: points and verdict are those of the remaining
 /// groups, and hints limit the reports on their scenes ([`disclosed_grade`]). Unless the suite shows the output of
 /// programs, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
-#[must_use]
 pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
         return disclosed_grade(grade);
@@ -84,7 +82,6 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
 
 /// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it: the simulator
 /// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points do not count.
-#[must_use]
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
@@ -105,7 +102,6 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
 
 /// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Together they nearly
 /// always distinguish mistakes that one scene cannot.
-#[must_use]
 pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
     if explained > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
@@ -114,7 +110,6 @@ pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
 /// Returns at most three likely mistakes, with the number of wrong scenes that each explains. The mistake that explains
 /// most scenes comes first; later ones explain most of the rest, and explain those scenes completely
 /// ([`explain_together`]).
-#[must_use]
 pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted_keys)
         .into_iter()
@@ -126,7 +121,6 @@ pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
 }
 
 /// Returns the number of scenes whose explanations name `mistake`, or one of its unwritten stages.
-#[must_use]
 pub fn count_explained_scenes(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }

@@ -19,7 +19,6 @@ fosssim_num::closed_set! {
 
 impl Integrator {
     /// Returns whether the integrator solves a system of equations in every step.
-    #[must_use]
     pub const fn is_implicit(self) -> bool {
         match self {
             Self::ImplicitEuler | Self::LinearizedImplicitEuler => true,

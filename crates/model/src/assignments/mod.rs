@@ -49,7 +49,6 @@ impl Assignment {
     pub const DEFAULT: Self = Self::T2M2;
 
     /// Returns all assignments: the default one, then the others in the order of the course.
-    #[must_use]
     pub fn list_default_first() -> [Self; Self::ALL.len()] {
         let mut all = Self::ALL;
         all.sort_by_key(|assignment| *assignment != Self::DEFAULT);
@@ -57,7 +56,6 @@ impl Assignment {
     }
 
     /// Returns the rules of the assignment.
-    #[must_use]
     pub const fn definition(self) -> &'static Definition {
         match self {
             Self::T1M1 => &theme1::MILESTONE_1,
@@ -70,7 +68,6 @@ impl Assignment {
     }
 
     /// Returns the assignment that introduced a collision type.
-    #[must_use]
     pub const fn for_collisions(collision: CollisionType) -> Self {
         match collision {
             CollisionType::None => Self::T1M1,
@@ -80,13 +77,11 @@ impl Assignment {
     }
 
     /// Returns the assignment's key, which names its suite and its folders.
-    #[must_use]
     pub const fn key(self) -> &'static str {
         self.definition().key
     }
 
     /// Returns the assignment named `key`.
-    #[must_use]
     pub fn from_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|assignment| assignment.key() == key)
     }
@@ -134,7 +129,6 @@ const COMMON: Definition = Definition {
 
 impl Definition {
     /// Returns the assignment's handling of a collision type, or `None` if another assignment adds the type.
-    #[must_use]
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
     }

@@ -19,7 +19,6 @@ fosssim_num::closed_set! {
 
 impl PairKind {
     /// Returns the number of polynomials that a detection call of this kind logs: 2, 4 or 2 in the order of the kinds.
-    #[must_use]
     pub const fn polynomial_count(self) -> usize {
         match self {
             Self::ParticleEdge => 4,
@@ -29,7 +28,6 @@ impl PairKind {
 
     /// Returns the number of coefficients of each polynomial before small leading ones are dropped, or 0 for a missing
     /// polynomial.
-    #[must_use]
     pub const fn coefficient_counts(self) -> [usize; Self::MAX_POLYNOMIALS] {
         match self {
             Self::ParticleEdge => [5, 3, 3, 6],
@@ -38,7 +36,6 @@ impl PairKind {
     }
 
     /// Returns the number of the kind in a trace.
-    #[must_use]
     pub const fn code(self) -> i32 {
         self as i32
     }
@@ -48,19 +45,16 @@ impl PairKind {
 
     /// Returns the kind's place in [`PairKind::ALL`].
     #[inline]
-    #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
 
     /// Returns the kind with number `code` in a trace, or `None` for the numbers of a damaged trace.
-    #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
     }
 
     /// Returns the name of the second object's kind, such as `edge`.
-    #[must_use]
     pub const fn second_name(self) -> &'static str {
         match self {
             Self::ParticleParticle => "particle",
@@ -70,7 +64,6 @@ impl PairKind {
     }
 
     /// Returns the original's name for the second object (oracle-behavior.md 6.1).
-    #[must_use]
     pub const fn original_second_name(self) -> &'static str {
         match self {
             Self::ParticleParticle => "Particle",

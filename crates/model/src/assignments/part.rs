@@ -32,7 +32,6 @@ pub enum Part {
 
 impl Part {
     /// Returns the file in which the student submits the part.
-    #[must_use]
     pub const fn file(self) -> &'static str {
         match self {
             Self::KineticEnergy => "TwoDScene.cpp",

@@ -26,7 +26,6 @@ macro_rules! forces {
     ($($kind:ident $element:literal { $($field:ident: $part:ident($($name:literal),+ $(; $($rule:expr),+)?)),+ })+) => {
         impl ForceKind {
             /// Returns the name of the force's element.
-            #[must_use]
             pub const fn element(self) -> &'static str {
                 match self { $(Self::$kind => $element),+ }
             }
@@ -44,7 +43,6 @@ macro_rules! forces {
 
         impl Force {
             /// Returns the force's kind.
-            #[must_use]
             pub const fn kind(&self) -> ForceKind {
                 match self { $(Self::$kind { .. } => ForceKind::$kind),+ }
             }

@@ -57,7 +57,6 @@ const COMMON_MISSPELLINGS: [(&str, &str); 8] = [
 
 /// Returns the candidate that `word` probably means: equal except for case and punctuation, a common alternative name,
 /// an abbreviation, or within a few typos (a third of the letters, at most two).
-#[must_use]
 pub fn find_closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const MAX_LETTERS: usize = 40;
     if word.len() > MAX_LETTERS {

@@ -31,7 +31,6 @@ pub enum UnknownPart {
 
 impl UnknownFeature {
     /// Returns whether a program rejects the scene and writes no trace.
-    #[must_use]
     pub const fn is_rejected(&self) -> bool {
         match self.part {
             UnknownPart::Integrator(_) => true,
@@ -101,7 +100,6 @@ impl Scene {
 
     /// Returns the first assignment of the course whose programs can run the scene; otherwise the assignment that added
     /// its collision handling.
-    #[must_use]
     pub fn assignment(&self) -> Assignment {
         match self.collision {
             Collision::Penalty { detection: CollisionDetection::Contest, .. } => Assignment::T2M3,

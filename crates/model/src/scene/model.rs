@@ -31,7 +31,6 @@ pub struct Scene {
 impl Scene {
     /// Returns the number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero,
     /// negative and unrepresentable quotients give no step (scene-format.md 4).
-    #[must_use]
     pub fn step_count(&self) -> u32 {
         let quotient = (self.duration / self.time_step).ceil();
         // Outside the 32-bit range (and for NaN) the processor's conversion gives -2147483648, so there are no steps.
@@ -85,7 +84,6 @@ pub enum Collision {
 
 impl Collision {
     /// Returns the collision type, without the numbers.
-    #[must_use]
     pub const fn kind(&self) -> CollisionType {
         match self {
             Self::None => CollisionType::None,
@@ -97,7 +95,6 @@ impl Collision {
     }
 
     /// Returns the coefficient of restitution, or 1 if no collision has a response.
-    #[must_use]
     pub const fn restitution(&self) -> f64 {
         match *self {
             Self::Simple { restitution } | Self::ContinuousTime { restitution } | Self::Hybrid { restitution, .. } => {
@@ -111,7 +108,6 @@ impl Collision {
     ///
     /// # Panics
     /// Never panics: a test checks that every type is handled by its assignment.
-    #[must_use]
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
         Assignment::for_collisions(kind).definition().handling(kind).expect("an assignment handles what it brings")

@@ -11,7 +11,6 @@ use std::fmt;
 ///
 /// Reading gives an equal scene if its forces are in acting order and it is valid. A NaN or an infinity has no form in
 /// XML, and a NUL in a text is written as U+FFFD.
-#[must_use]
 pub fn write(scene: &Scene) -> String {
     let display = &scene.display;
     let mut all = Vec::new();
@@ -85,13 +84,11 @@ fn build_collision(collision: Collision) -> Option<Element> {
 }
 
 /// Returns the element of a scene's integrator and time step.
-#[must_use]
 pub fn integrator_element(scene: &Scene) -> String {
     build_integrator(scene).to_string()
 }
 
 /// Returns the element of a scene's collision handling; empty without one.
-#[must_use]
 pub fn collision_element(handling: Collision) -> String {
     build_collision(handling).map_or_else(String::new, |element| element.to_string())
 }

@@ -295,13 +295,11 @@ pub enum Decision {
 
 impl Decision {
     /// Returns whether the pair collides within the step.
-    #[must_use]
     pub const fn collides(self) -> bool {
         matches!(self, Self::Hit { .. })
     }
 
     /// Returns the time of impact. It is infinite if there is none or if none was searched.
-    #[must_use]
     pub const fn time(self) -> f64 {
         match self {
             Self::Hit { time, .. } | Self::Miss { time: ImpactTime::Found(time) } => time,

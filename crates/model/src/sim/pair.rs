@@ -27,7 +27,6 @@ pub struct PairKindMap<T>([T; PairKind::ALL.len()]);
 
 impl<T> PairKindMap<T> {
     /// Creates the values by calling a function for each kind.
-    #[must_use]
     pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
         Self(PairKind::ALL.map(value))
     }

@@ -86,7 +86,6 @@ pub struct Pairs {
 }
 
 /// Returns the pairs of one pass over a scene.
-#[must_use]
 pub fn pairs(scene: &Scene) -> Pairs {
     let edges = scene.edges.iter().map(|edge| [edge.first, edge.second]).collect();
     Pairs { particles: scene.particles.len(), edges, half_planes: scene.half_planes.len() }
@@ -117,7 +116,6 @@ impl Pairs {
     }
 
     /// Returns the number of pairs of each kind.
-    #[must_use]
     pub fn counts(&self) -> PairKindMap<usize> {
         let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
         PairKindMap::from_fn(|kind| match kind {
@@ -128,20 +126,17 @@ impl Pairs {
     }
 
     /// Returns the number of pairs.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.counts().values().sum()
     }
 
     /// Returns the number of polynomials of a pass, if passes log polynomials.
-    #[must_use]
     pub fn polynomial_count(&self) -> usize {
         self.counts().iter().map(|(kind, count)| kind.polynomial_count() * count).sum()
     }
 
     /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
     /// number within the pair. `None` if passes have no polynomials.
-    #[must_use]
     pub fn locate_polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomial_count();
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));

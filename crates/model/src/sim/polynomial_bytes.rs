@@ -47,13 +47,11 @@ impl PolynomialBytes {
     }
 
     /// Returns the number of polynomials.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.count
     }
 
     /// Returns the list's bytes.
-    #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes[self.range()]
     }
@@ -71,7 +69,6 @@ impl PolynomialBytes {
 
     /// Returns an upper bound of the absolute values of all coefficients, ignoring NaN. The bound may come from a pair
     /// that is not logged.
-    #[must_use]
     pub fn max_modulus(&self) -> f64 {
         self.max_modulus
     }

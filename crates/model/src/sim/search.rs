@@ -34,7 +34,6 @@ pub struct SearchCounts {
 
 impl SearchCounts {
     /// Returns the work of the calls, in units of a call that a certificate excludes. It is the same on every machine.
-    #[must_use]
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }

@@ -30,7 +30,6 @@ impl Simulation {
     ///
     /// # Panics
     /// Panics if an edge names a particle that does not exist; the strict reader rejects such scenes.
-    #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
         let state = State::for_scene(scene);
         Self {
@@ -46,7 +45,6 @@ impl Simulation {
     }
 
     /// Returns the current state.
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
@@ -96,13 +94,11 @@ impl Simulation {
     }
 
     /// Returns the counts of root searches over all steps so far.
-    #[must_use]
     pub fn search_counts(&self) -> SearchCounts {
         self.handler.counts()
     }
 
     /// Returns the work of all steps so far: detection ([`SearchCounts::work`]) and Newton's method.
-    #[must_use]
     pub fn work(&self) -> u64 {
         self.handler.counts().work() + self.stepper.work()
     }

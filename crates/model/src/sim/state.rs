@@ -12,7 +12,6 @@ pub struct State {
 
 impl State {
     /// Returns the initial state of a scene.
-    #[must_use]
     pub fn for_scene(scene: &Scene) -> Self {
         let mut state = Self::default();
         for particle in &scene.particles {
@@ -23,7 +22,6 @@ impl State {
     }
 
     /// Returns whether all numbers are finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         self.positions.iter().chain(&self.velocities).all(|value| value.is_finite())
     }

@@ -35,7 +35,6 @@ pub enum StepError {
 
 impl StepError {
     /// Returns the step, from 1.
-    #[must_use]
     pub const fn step(&self) -> u32 {
         match *self {
             Self::RootSearch { step, .. }

@@ -63,7 +63,6 @@ pub struct EventCounts {
 
 impl EventCounts {
     /// Creates counts of zero for a simulation of `scene`.
-    #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
@@ -72,7 +71,6 @@ impl EventCounts {
     }
 
     /// Returns the number of passes of all stages.
-    #[must_use]
     pub fn passes(&self) -> u64 {
         self.simple_passes + self.continuous_time_passes + self.impulse_passes + self.geometric_passes
     }

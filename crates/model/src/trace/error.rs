@@ -45,7 +45,6 @@ pub enum RecordList {
 
 impl RecordList {
     /// Returns the minimum number of bytes of an entry: 36 for an impulse, or 4 for an empty polynomial.
-    #[must_use]
     pub const fn entry_bytes(self) -> u64 {
         match self {
             Self::Impulses => super::encode::IMPULSE_BYTES as u64,

@@ -17,7 +17,6 @@ pub struct Frame {
 
 impl Frame {
     /// Returns whether both frames are identical, bit for bit.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         has_same_bits(&self.state.positions, &other.state.positions)
             && has_same_bits(&self.state.velocities, &other.state.velocities)
@@ -107,20 +106,17 @@ impl TryFrom<ImpulseForm> for LoggedImpulse {
 
 impl LoggedImpulse {
     /// Returns the kind of the impulse's pair, or `None` in a damaged trace.
-    #[must_use]
     pub fn kind(&self) -> Option<PairKind> {
         PairKind::from_code(self.kind)
     }
 
     /// Returns the impulse's pair, or `None` if such a pair is impossible.
-    #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
         Some(Pair { kind: self.kind()?, first, second })
     }
 
     /// Returns whether both impulses are identical, bit for bit.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let numbers = |impulse: &Self| [impulse.normal.x, impulse.normal.y, impulse.time];
         (self.kind, self.first, self.second) == (other.kind, other.first, other.second)
@@ -159,14 +155,12 @@ pub struct PolynomialLog {
 impl PolynomialLog {
     /// Returns the number of polynomials.
     #[inline]
-    #[must_use]
     pub fn len(&self) -> usize {
         self.coefficient_ends.len()
     }
 
     /// Returns whether there are no polynomials.
     #[inline]
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.coefficient_ends.is_empty()
     }
@@ -188,7 +182,6 @@ impl PolynomialLog {
     /// # Panics
     /// Panics if there is no such polynomial.
     #[inline]
-    #[must_use]
     pub fn get(&self, index: usize) -> &[f64] {
         let start = if index == 0 { 0 } else { self.coefficient_ends[index - 1] };
         &self.coefficients[start..self.coefficient_ends[index]]

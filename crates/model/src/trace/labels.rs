@@ -20,7 +20,6 @@ pub struct PolynomialLabel {
 /// Returns the labels of the polynomials that the reference logs in the step after `before`, in the order of the trace.
 /// A submission's list has the same labels as long as it has the same length. Empty if the step has no result, or if
 /// the number of particles in `before` differs from the scene's.
-#[must_use]
 pub fn collect_labels(scene: &Scene, before: &State) -> Vec<PolynomialLabel> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let state = simulation.state_mut();

@@ -16,7 +16,6 @@ pub struct Layout {
 
 impl Layout {
     /// Returns the layout of the traces of `scene`.
-    #[must_use]
     pub fn for_scene(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
         let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.polynomials);
@@ -29,45 +28,38 @@ impl Layout {
     }
 
     /// Returns the number of bytes of positions and velocities, 32 N.
-    #[must_use]
     pub const fn state_bytes(&self) -> usize {
         32 * self.particles
     }
 
     /// Returns the number of records per step: 2 with a mid record, otherwise 1.
-    #[must_use]
     pub const fn records_per_step(&self) -> u32 {
         if self.has_polynomials { 2 } else { 1 }
     }
 
     /// Returns the number of records of a complete trace, including the initial one.
-    #[must_use]
     pub fn records(&self) -> u64 {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
     }
 
     /// Returns whether a trace of `bytes` bytes contains only a state for each step although records of this layout
     /// contain more. Programs whose library has no collisions write such traces.
-    #[must_use]
     pub fn is_states_only(&self, bytes: u64) -> bool {
         let more = self.has_impulses || self.has_polynomials;
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
     /// Returns the step of record `record`, from 1, or 0 for the initial record.
-    #[must_use]
     pub fn step_of_record(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)
     }
 
     /// Returns whether record `record` is a mid record, i.e. not the last one of its step.
-    #[must_use]
     pub fn is_mid_record(&self, record: u64) -> bool {
         self.has_polynomials && record % 2 == 1
     }
 
     /// Returns the number of the end record of step `step`; 0 is the initial record.
-    #[must_use]
     pub fn end_record(&self, step: u32) -> u64 {
         u64::from(self.records_per_step()) * u64::from(step)
     }

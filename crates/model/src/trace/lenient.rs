@@ -40,7 +40,6 @@ const MAX_KEPT_COEFFICIENTS: usize = 4096;
 
 /// Returns the memory that the lists of one record of the scene's traces may take, in bytes. It is the memory of the
 /// polynomials of all possible detection passes of a step (collisions.md 4 and 5), within bounds.
-#[must_use]
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
     let of_particles = particles.saturating_mul(particles.saturating_sub(1));
@@ -97,7 +96,6 @@ pub struct LenientFrame {
 
 impl LenientFrame {
     /// Returns whether only a part of the polynomial list was kept.
-    #[must_use]
     pub fn is_cut(&self) -> bool {
         self.logged_polynomials > self.polynomials.len()
     }
@@ -162,7 +160,6 @@ pub struct LenientReader<R> {
 
 impl<'a> LenientReader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
-    #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
         let mut reader = Self::new(trace, layout);
         reader.source = reader.source.with_length(trace.len() as u64);
@@ -223,20 +220,17 @@ impl<R: Read> LenientReader<R> {
     }
 
     /// Returns the number of records read.
-    #[must_use]
     pub fn record_count(&self) -> u64 {
         self.record
     }
 
     /// Returns the byte offset of the last record (of the next record before the first call of
     /// [`LenientReader::next`]).
-    #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.record_start
     }
 
     /// Returns the byte offset of the next read.
-    #[must_use]
     pub fn offset(&self) -> u64 {
         self.source.offset()
     }

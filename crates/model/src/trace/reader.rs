@@ -45,7 +45,6 @@ pub struct Reader<R> {
 
 impl<'a> Reader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
-    #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
         Self::from_lenient(LenientReader::from_slice(trace, layout), layout)
     }
@@ -118,37 +117,31 @@ impl<R: Read> Reader<R> {
 
     /// Returns oddities of the last record that do not stop the reading: impulses of unknown type or with missing
     /// objects, sizes below 0 (read as 0) or above 6. At most 16.
-    #[must_use]
     pub fn notes(&self) -> &[TraceError] {
         &self.notes
     }
 
     /// Returns the bytes of the last record, with [`Reader::with_raw_bytes`].
-    #[must_use]
     pub fn raw_bytes(&self) -> &[u8] {
         &self.raw
     }
 
     /// Returns the number of records read.
-    #[must_use]
     pub fn record_count(&self) -> u64 {
         self.records.record_count()
     }
 
     /// Returns the byte offset of the last record (of the next record before the first call of [`Reader::next`]).
-    #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.records.record_offset()
     }
 
     /// Returns the byte offset after the last record.
-    #[must_use]
     pub fn offset(&self) -> u64 {
         self.records.offset()
     }
 
     /// Returns the layout.
-    #[must_use]
     pub fn layout(&self) -> Layout {
         self.layout
     }

@@ -31,13 +31,11 @@ impl<W: Write> Recorder<W> {
     }
 
     /// Returns the bytes and records written so far, including those in the buffer.
-    #[must_use]
     pub fn written_trace(&self) -> WrittenTrace {
         self.writer.written_trace()
     }
 
     /// Returns whether writing has failed, so further steps are pointless.
-    #[must_use]
     pub fn has_failed(&self) -> bool {
         self.writer.has_failed()
     }

@@ -103,7 +103,6 @@ impl<W: Write> Writer<W> {
     }
 
     /// Returns the bytes and records written so far, including those in the buffer.
-    #[must_use]
     pub fn written_trace(&self) -> WrittenTrace {
         WrittenTrace {
             records: self.written.records,
@@ -112,7 +111,6 @@ impl<W: Write> Writer<W> {
     }
 
     /// Returns whether writing has failed. Later bytes are then dropped.
-    #[must_use]
     pub fn has_failed(&self) -> bool {
         self.error.is_some()
     }

@@ -54,14 +54,12 @@ crate::closed_set! {
 /// Coefficients that are not finite give `false` unless a polynomial of degree at most two decides and every polynomial
 /// with such coefficients has degree at most two, for which the search returns normally.
 #[inline]
-#[must_use]
 pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
     find_exclusion(polynomials).is_some()
 }
 
 /// Tests like [`excludes_unit_interval`], and returns the level that has decided.
 #[inline]
-#[must_use]
 pub fn find_exclusion(polynomials: &[Polynomial]) -> Option<Level> {
     find_list_exclusion(polynomials.iter().map(Polynomial::coefficients))
 }

@@ -108,7 +108,6 @@ pub struct CertifiedDecision {
 /// # Panics
 /// Panics if there are more than [`MAX_POLYNOMIALS`] polynomials, or one of them has more than [`MAX_COEFFICIENTS`]
 /// coefficients.
-#[must_use]
 pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision {
     let upper = Problem::new(polynomials, units, IntervalEnd::Upper);
     if !upper.is_finite() {

@@ -50,7 +50,7 @@ pub(crate) fn search(problem: &Problem) -> SearchOutcome {
     let mut walk = PieceWalk { problem, first_open: None, slack: f64::INFINITY, pieces: 0 };
     let mut controls = BernsteinForms::new();
     for (index, polynomial) in problem.polynomials().iter().enumerate() {
-        controls.push(BernsteinForm { index, ..polynomial.to_bernstein() });
+        controls.push(BernsteinForm { index, ..polynomial.compute_bernstein() });
     }
     let reached = walk.visit(0.0, 1.0, &controls, 0);
     let answer = match (reached, walk.first_open) {
@@ -143,7 +143,7 @@ impl PieceWalk<'_> {
             let (mut first, second) = split(control);
             if lo == 0.0 {
                 // Near 0 small coefficients decide, which large ones have swamped, so they are converted again.
-                let fresh = self.problem.polynomials()[control.index].to_bernstein_until(middle);
+                let fresh = self.problem.polynomials()[control.index].compute_bernstein_until(middle);
                 first = BernsteinForm { index: control.index, ..fresh };
             }
             left.push(first);

@@ -206,7 +206,7 @@ impl ExactPolynomial {
         if self.coefficients[0] > 0.0 {
             return None;
         }
-        let control = self.to_bernstein();
+        let control = self.compute_bernstein();
         let greatest = control.values[..control.length].iter().fold(f64::NEG_INFINITY, |most, &value| most.max(value));
         let distance = -greatest - control.error;
         (distance > 0.0).then(|| slack(distance, self.bound))
@@ -215,7 +215,7 @@ impl ExactPolynomial {
     /// Returns the Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing is
     /// concluded from it.
     #[inline]
-    pub(crate) fn to_bernstein(&self) -> BernsteinForm {
+    pub(crate) fn compute_bernstein(&self) -> BernsteinForm {
         let values = match self.length {
             0 | 1 => self.coefficients,
             2 => self.convert([1.0, 1.0]),
@@ -230,13 +230,13 @@ impl ExactPolynomial {
 
     /// Returns the Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1:
     /// scaling is exact except for underflow.
-    pub(crate) fn to_bernstein_until(&self, end: f64) -> BernsteinForm {
+    pub(crate) fn compute_bernstein_until(&self, end: f64) -> BernsteinForm {
         let (mut stretched, mut power) = (*self, 1.0);
         for value in &mut stretched.coefficients {
             *value *= power;
             power *= end;
         }
-        stretched.to_bernstein()
+        stretched.compute_bernstein()
     }
 
     /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times

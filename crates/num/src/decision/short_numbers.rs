@@ -5,7 +5,6 @@
 
 /// Returns whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros
 /// fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
-#[must_use]
 pub fn are_short(values: &[f64], bits: u32) -> bool {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
     for &value in values {

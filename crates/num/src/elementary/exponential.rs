@@ -20,7 +20,6 @@ const LARGE_EXPONENT: u64 = 0x408;
 const OVERFLOW_EXPONENT: u64 = 0x409;
 
 /// Returns `e^x`. The result is infinite above 709.78 and zero below -745.13.
-#[must_use]
 pub fn exp(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52 & 0x7ff;
     if exponent < TINY_EXPONENT || exponent == 0x7ff {

@@ -34,7 +34,6 @@ const NEAR_ONE_BIT_COUNT: u64 = 0x0003_0900_0000_0000;
 const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 
 /// Returns the natural logarithm. The result is `-inf` at zero and NaN below.
-#[must_use]
 pub fn ln(x: f64) -> f64 {
     let mut bits = x.to_bits();
     if bits.wrapping_sub(NEAR_ONE_START_BITS) < NEAR_ONE_BIT_COUNT {

@@ -30,7 +30,6 @@ const COSINE_COEFFICIENTS: [f64; 3] =
     [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
 
 /// Returns the sine of an angle in radians, or NaN for infinity.
-#[must_use]
 pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
         word if word < SINE_IS_ANGLE_LIMIT => angle,
@@ -41,7 +40,6 @@ pub fn sin(angle: f64) -> f64 {
 }
 
 /// Returns the cosine of an angle in radians, or NaN for infinity.
-#[must_use]
 pub fn cos(angle: f64) -> f64 {
     match high_word(angle) {
         word if word < COSINE_IS_ONE_LIMIT => 1.0,

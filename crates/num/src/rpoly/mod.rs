@@ -52,7 +52,6 @@ impl Zeros {
 
     /// Returns the count that the original returns: the degree, less if the search stopped early, or `-1` if the
     /// polynomial was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
-    #[must_use]
     pub fn count(&self) -> i32 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
         if self.rejected { -1 } else { self.length as i32 }
@@ -60,14 +59,12 @@ impl Zeros {
 
     /// Returns the zeros as pairs (real part, imaginary part). The list is empty if the polynomial was rejected.
     #[inline]
-    #[must_use]
     pub fn as_slice(&self) -> &[(f64, f64)] {
         &self.list[..self.length]
     }
 
     /// Returns the number of steps of all stages together: usually a few dozen, thousands if a polynomial is mostly
     /// round-off or subnormal. Only the duration of the search depends on it.
-    #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
     }

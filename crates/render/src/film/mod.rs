@@ -14,13 +14,11 @@ pub const MAX_RATE: u16 = 240;
 
 impl Rate {
     /// Creates a rate from 1 to [`MAX_RATE`], or returns `None` for other values.
-    #[must_use]
     pub const fn new(per_second: u16) -> Option<Self> {
         if per_second == 0 || per_second > MAX_RATE { None } else { Some(Self(per_second)) }
     }
 
     /// Returns the number of pictures per second.
-    #[must_use]
     pub const fn per_second(self) -> u16 {
         self.0
     }

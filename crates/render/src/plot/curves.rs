@@ -46,7 +46,6 @@ const PIECE_SAMPLES: usize = 8;
 
 impl PolynomialPlot<'_> {
     /// Renders the plot.
-    #[must_use]
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
         #[expect(clippy::cast_precision_loss, reason = "a handful")]

@@ -21,7 +21,6 @@ const HEIGHT: f64 = 192.0;
 
 impl PassPlot<'_> {
     /// Renders the plot.
-    #[must_use]
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);

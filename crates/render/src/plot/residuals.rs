@@ -35,7 +35,6 @@ const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
     /// Renders the plot.
-    #[must_use]
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);

@@ -5,7 +5,6 @@ pub const SNIFFED_BYTES: u64 = 512;
 
 /// Returns the kind of a file that begins with `start`, if such a file can't be a trace. Traces begin with the bits of
 /// a position.
-#[must_use]
 pub fn detect_file_kind(start: &[u8]) -> Option<&'static str> {
     const FILE_SIGNATURES: [(&[u8], &str); 8] = [
         (b"\x7fELF", "looks like a program (ELF)"),

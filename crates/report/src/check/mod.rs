@@ -64,13 +64,11 @@ pub struct Check<'a> {
 
 impl Check<'_> {
     /// Returns whether the official rule book accepts the trace.
-    #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
     /// Returns the official verdict as text, such as `wrong answer`.
-    #[must_use]
     pub fn verdict(&self) -> &'static str {
         self.outcome.ruling(self.book()).name()
     }
@@ -81,7 +79,6 @@ impl Check<'_> {
     }
 
     /// Returns a sentence about which book accepts the trace; `None` if the rule books agree.
-    #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
         find_cause(self.outcome).map(fair::describe_sides)
     }
@@ -97,20 +94,17 @@ impl Check<'_> {
     }
 
     /// Renders the report as text for people.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         text::render(self, style)
     }
 
     /// Renders the requested steps, with expected and actual values. Returns `None` if none of them is wrong.
-    #[must_use]
     pub fn steps_text(&self, style: Style) -> Option<String> {
         steps::render(self, style)
     }
 
     /// Returns annotations for GitHub Actions: one for the verdict with the likely mistakes, if the trace is not
     /// accepted, and one if the rule books differ.
-    #[must_use]
     pub fn github(&self) -> String {
         let mut text = String::new();
         let title = format!("{}: {}", self.trace, self.verdict());
@@ -129,7 +123,6 @@ impl Check<'_> {
     }
 
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
-    #[must_use]
     pub fn json(&self) -> String {
         to_document(&CheckView::from(self))
     }

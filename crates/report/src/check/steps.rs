@@ -53,7 +53,6 @@ pub struct WrongSteps {
 
 impl WrongSteps {
     /// Creates an empty collection that keeps the steps selected by `shown`.
-    #[must_use]
     pub fn new(shown: StepChoice) -> Self {
         Self { shown_steps: shown, ..Self::default() }
     }

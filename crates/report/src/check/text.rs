@@ -166,7 +166,6 @@ fn describe_damage(outcome: &Outcome) -> String {
 }
 
 /// Describes where and why judging stopped, in one line.
-#[must_use]
 pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = describe_problem(stop, outcome);
     let what = match stop {

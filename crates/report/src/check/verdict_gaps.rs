@@ -4,7 +4,6 @@ use fosssim_judge::{ReadFailure, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
 /// Returns whether there is something to explain: whether the fair rules reject the trace.
-#[must_use]
 pub fn needs_explanation(outcome: &Outcome) -> bool {
     match &outcome.fair {
         Some(fair) => fair.verdict == FairVerdict::Rejected,
@@ -13,7 +12,6 @@ pub fn needs_explanation(outcome: &Outcome) -> bool {
 }
 
 /// Returns the reason why no trace of this scene can get a verdict; `None` for nearly all scenes.
-#[must_use]
 pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     match outcome.parity.endless_step {
         Some(StepError::VortexHessian { .. }) => Some(format!(
@@ -24,7 +22,6 @@ pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
 }
 
 /// Returns the message about a trace that could not be read to its end, and therefore has no verdict.
-#[must_use]
 pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {
         Some(Stop::Trace { cause: ReadFailure::Io, offset, .. }) => format!(" at byte {offset}"),

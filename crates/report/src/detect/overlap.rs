@@ -29,7 +29,6 @@ pub struct Overlap<'a> {
 
 impl Overlap<'_> {
     /// Renders the report for people.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         style.paint(TextStyle::Strong, &title(self.pair, self.step, self.trace, self.scene))
             + "\n"
@@ -83,7 +82,6 @@ impl Overlap<'_> {
     }
 
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
-    #[must_use]
     pub fn json(&self) -> String {
         let &Self { study, scene, trace, step, pair, .. } = self;
         let time = WrittenNumber(if study.collides { 0.0 } else { f64::INFINITY });

@@ -19,7 +19,6 @@ pub(crate) struct SceneShare {
 
 /// Renders the report on the class. It lists at most `most` scenes, mistakes, and names of submissions with the same
 /// program.
-#[must_use]
 pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(TextStyle::Strong, "Class"), render_head(grades));
     let (scenes, whole) = find_hardest(grades);

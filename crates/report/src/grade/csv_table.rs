@@ -44,7 +44,6 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
 /// submission is not accepted everywhere. `same_program` names the other submissions with the same program. `worth` is
 /// the number of points that fixing the first likely mistake would give. Skipped entries have rows with nothing but the
 /// reason.
-#[must_use]
 pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
                 reason,same_program,worth";

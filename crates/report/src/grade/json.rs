@@ -284,7 +284,6 @@ fn strip_entry(entry: &SkippedEntry) -> SkippedEntry {
 }
 
 /// Renders one line of JSON per grade, and one per skipped entry.
-#[must_use]
 pub fn render_lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let passed_over = passed_over.iter().map(|entry| {

@@ -21,7 +21,6 @@ mod text;
 use fosssim_findings::Grade;
 
 /// Renders only the JSON document. The data for other formats are not computed.
-#[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }

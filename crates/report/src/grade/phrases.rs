@@ -10,7 +10,6 @@ pub(super) const NOT_GRADED: &str = "not graded";
 
 /// Returns the first lines of a report, above all scenes. They name the fault of the whole submission, or the scenes in
 /// which the program fails and the likely mistakes.
-#[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
         return vec![unfit];
@@ -96,7 +95,6 @@ pub(super) const fn describe_repeated_reason(scene: &SceneGrade) -> &'static str
 }
 
 /// Returns a sentence about a scene that the two rule books judge differently; `None` if they agree.
-#[must_use]
 pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     scene.difference_cause.map(|cause| {
         let verdicts = if cause.is_original_too_strict() {
@@ -116,27 +114,23 @@ pub(super) fn list_first(names: &[impl AsRef<str>], most: usize) -> String {
 }
 
 /// Formats points without trailing zeros, such as `12.5` or `10`.
-#[must_use]
 pub fn format_points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Formats a score, such as `12.5 of 20 points`.
-#[must_use]
 pub fn format_score(reached: f64, most: f64) -> String {
     let plural = if format_points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", format_points(reached), format_points(most))
 }
 
 /// Formats points that may be missing. They are missing if the grader failed, which does not give zero points.
-#[must_use]
 pub fn format_optional_points(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), format_points)
 }
 
 /// Returns the reason why a grade has no points; `None` if it has points.
-#[must_use]
 pub fn describe_missing_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {
         None

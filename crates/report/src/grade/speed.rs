@@ -4,7 +4,6 @@ use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
 /// Describes a group's points for speed, and how they were computed.
-#[must_use]
 pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
     let of = format!("of {} points for speed", format_points(marking.points));

@@ -27,7 +27,6 @@ const MIN_ROUNDED_BYTES: usize = 60_000;
 
 impl Card {
     /// Returns the card of a case, below a heading of level `depth`; `None` if the hints do not allow it.
-    #[must_use]
     pub fn for_case(case: &Case<'_>, depth: usize) -> Option<Self> {
         if case.hints == Hints::None {
             return None;
@@ -44,7 +43,6 @@ impl Card {
     }
 
     /// Returns a card that contains only text.
-    #[must_use]
     pub fn from_words(words: &str) -> Self {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
@@ -56,13 +54,11 @@ impl Card {
     }
 
     /// Returns the card in the form in which it is stored.
-    #[must_use]
     pub fn to_stored(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
     /// Parses a card in the form in which it is stored; `None` if it is damaged.
-    #[must_use]
     pub fn from_stored(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }

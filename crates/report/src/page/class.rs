@@ -46,7 +46,6 @@ pub struct ClassPage<'a> {
 
 impl ClassPage<'_> {
     /// Renders the page as one HTML file.
-    #[must_use]
     pub fn html(&self) -> String {
         let content = ClassContent {
             class: self,

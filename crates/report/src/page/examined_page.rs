@@ -10,7 +10,6 @@ use fosssim_student::{self as student};
 impl MistakeRun {
     /// Simulates the reference with the named mistake, to compare it with the trace. Returns `None` if the mistake
     /// reproduces no step, if the trace was not kept completely, or if the evidence does not contain the whole motion.
-    #[must_use]
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // An incomplete motion cannot be compared.
         let trace = trace?;
@@ -26,7 +25,6 @@ impl MistakeRun {
 }
 
 /// Renders the page about one judged trace. It has full hints, because the author of the trace requests it.
-#[must_use]
 pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;
     let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.trace.bytes());

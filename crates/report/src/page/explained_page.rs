@@ -31,7 +31,6 @@ pub struct ExplainedPage<'a> {
 
 impl ExplainedPage<'_> {
     /// Renders the page as one HTML file.
-    #[must_use]
     pub fn html(&self) -> String {
         let cases = &self.diagnosis.cases;
         let wrong = cases.iter().filter(|case| !case.accepted).count();

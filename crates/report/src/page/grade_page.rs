@@ -53,7 +53,6 @@ pub struct GradePage<'a> {
 
 impl GradePage<'_> {
     /// Renders the page as one HTML file.
-    #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
             Audience::Student => immediate_grade(self.grade),

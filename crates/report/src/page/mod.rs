@@ -83,14 +83,12 @@ fn script() -> &'static str {
 }
 
 /// Returns the style sheet of all pages. Other pages use it to have the same design.
-#[must_use]
 pub fn style() -> String {
     format!("{}{STYLE}", fosssim_render::plot::STYLE)
 }
 
 /// Returns the policy sources that allow the script and the style of a report. A page that shows a report in a frame
 /// must allow them as well, because a frame inherits the policy of the surrounding page.
-#[must_use]
 pub fn framed_digests() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
 }
@@ -126,7 +124,6 @@ fn render_template(template: &impl Template) -> String {
 }
 
 /// Returns the digest by which a content security policy allows a script or a style sheet.
-#[must_use]
 pub fn digest(text: &str) -> String {
     use base64::Engine;
     format!("sha256-{}", base64::engine::general_purpose::STANDARD.encode(Sha256::digest(text)))

@@ -4,7 +4,6 @@ use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};
 
 /// Renders the summary as one JSON object, indented, with a line feed at its end.
-#[must_use]
 pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     let layout = summary.layout;
     let collision =

@@ -40,7 +40,6 @@ pub struct ShownStep<'a> {
 
 impl ShownStep<'_> {
     /// Renders the step for people. If both records are equal, only the end record is shown.
-    #[must_use]
     pub fn text(&self, style: Style) -> String {
         let heading = match self.step {
             0 => "Initial record".to_owned(),
@@ -112,7 +111,6 @@ impl ShownStep<'_> {
     }
 
     /// Renders the step for programs: one JSON object, indented, with a line feed at its end.
-    #[must_use]
     pub fn json(&self, scene: &str, trace: &str) -> String {
         let value = json!({
             "schema": SCHEMA,

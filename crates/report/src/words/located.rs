@@ -5,7 +5,6 @@ use fosssim_findings::located_failure::{Content, LocatedFailure};
 const MAX_NAMED_CONTENTS: usize = 2;
 
 /// Describes what the failing scenes have in common, with counts, and how the program ended in the first of them.
-#[must_use]
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure {
         failure: failing,

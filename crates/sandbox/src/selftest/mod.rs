@@ -85,7 +85,6 @@ impl PromiseTable {
     }
 
     /// Returns the number of promises that are kept.
-    #[must_use]
     pub fn count_held(&self) -> usize {
         self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
     }

@@ -155,7 +155,6 @@ impl Database {
 
     /// Returns a handle to the same database with priority, for callers that must not wait, such as workers, whose
     /// leases expire. Even during many uploads, grades are stored and waiting jobs are claimed.
-    #[must_use]
     pub fn with_priority(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
     }

@@ -15,7 +15,6 @@ pub fn all_rows() -> impl Iterator<Item = &'static Row> {
 }
 
 /// Returns the row with the given id.
-#[must_use]
 pub fn find(id: &str) -> Option<&'static Row> {
     all_rows().find(|row| row.id == id)
 }

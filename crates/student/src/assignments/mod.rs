@@ -15,7 +15,6 @@ use fosssim_model::{
 ///
 /// # Panics
 /// Panics if a scene is not valid; a test reads all of them.
-#[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let read = |&(name, text): &(&str, &str)| {
         let loaded = scene::read(name, text.as_bytes()).unwrap_or_else(|problems| panic!("{name}: {problems}"));

@@ -40,27 +40,23 @@ pub struct MistakeRow<M> {
 
 impl<M> MistakeRow<M> {
     /// Returns the row with its mistake replaced by `mistake`.
-    #[must_use]
     pub fn with_mistake<N>(self, mistake: N) -> MistakeRow<N> {
         let Self { id, kind, area, summary: what, term, .. } = self;
         MistakeRow { mistake, id, kind, area, summary: what, term }
     }
 
     /// Returns the sentence about the mistake, preceded by the part of the program.
-    #[must_use]
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.program_part(), self.summary)
     }
 
     /// Returns the kind of pair to which the mistake is limited, if there is only one.
-    #[must_use]
     pub fn pair_kind(&self) -> Option<PairKind> {
         PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.program_part()))
     }
 
     /// Returns the part of the program in which the mistake is made: the kind of pair if there is only one, otherwise
     /// the area of the assignment.
-    #[must_use]
     pub fn program_part(&self) -> &'static str {
         match (self.id.split_once('-'), self.area) {
             (Some(("pp", _)), _) => "Particle-particle",
@@ -125,7 +121,6 @@ macro_rules! rows {
 
         impl $type {
             /// Returns the area of the assignment to which the mistake belongs.
-            #[must_use]
             pub const fn area(self) -> $crate::assignments::rows::Area {
                 match self {
                     $($(Self::$mistake => $crate::assignments::rows::Area::$area,)*)*
@@ -153,7 +148,6 @@ macro_rules! rows {
     (@ $type:ident [$edits:ident] $($mistake:ident $([$edit:expr])?,)*) => {
         impl $type {
             /// Returns the mistake's change of a pair's formulas, if it has one.
-            #[must_use]
             pub fn edit(self) -> Option<$edits> {
                 match self {
                     $($(Self::$mistake => Some($edit),)?)*

@@ -209,7 +209,6 @@ fn pair_axes(student: Student, pair: Pair) -> Axes {
 }
 
 /// Returns the polynomials of a pair of bodies by this student's formulas, as passed to the root finder.
-#[must_use]
 pub fn body_polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let object = match motion {
         PairMotion::Particles { .. } => Object::Particle(1),

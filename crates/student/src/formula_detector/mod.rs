@@ -9,7 +9,6 @@ const POLYNOMIAL_NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 /// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
 /// argument, or a letter of a quantity. Returns `None` if there are only words. The names `alpha > 0` and `alpha < 1`
 /// do not count as formulas.
-#[must_use]
 pub fn find_formula(sentence: &str) -> Option<String> {
     let text = POLYNOMIAL_NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
     let letters: Vec<char> = text.chars().collect();

@@ -39,7 +39,6 @@ pub(super) const fn is_state_mistake(row: &Row) -> bool {
 
 /// Returns whether a program with this mistake may write a different trace. A mistake is excluded only if the scene
 /// lacks a part: a stage of a step, or a kind of pair.
-#[must_use]
 pub fn may_change_trace(scene: &Scene, row: &Row) -> bool {
     is_applicable(scene, &pairs(scene).counts(), row)
 }

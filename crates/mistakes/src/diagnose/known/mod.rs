@@ -47,7 +47,6 @@ use trials::Trials;
 /// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. A trace
 /// whose first record belongs to another scene yields only the question whether it belongs to this one
 /// ([`Explanation::OTHER_SCENE`]).
-#[must_use]
 pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
     explain_kept_steps(&mut reference, scene, scan).explanations
@@ -55,7 +54,6 @@ pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
 
 /// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. This
 /// needs much less work than [`find_known`].
-#[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
     let rows: Vec<&'static Row> = keys.iter().filter_map(|key| find(key)).collect();

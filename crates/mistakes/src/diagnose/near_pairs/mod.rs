@@ -90,7 +90,6 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 
 /// Returns the traits that distinguish pairs that are applied `times` times (0 or 2) from pairs that are applied once.
 /// Of several traits, those with the fewest exceptions are returned.
-#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);

@@ -167,7 +167,7 @@ fn traces_of_the_same_stage_contradict_a_mistake() {
     let scenes = probe_scenes(Assignment::T2M2);
     let is_visible = |(_, scene): &&(String, Scene)| mistake_is_visible(scene, "zones-all-in-one");
     let (_, scene) = scenes.iter().find(is_visible).expect("a scene with zones");
-    let named = vec![row("zones-all-in-one", &[])];
+    let named = [row("zones-all-in-one", &[])];
     let fault = |fault| vec![stage(fault)];
     let of_zones = fault(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: true });
     let refuted = |named_in: usize, other: &[Explanation]| {

@@ -63,7 +63,6 @@ pub enum RejectionKind {
 impl Rejection {
     /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may
     /// contain any bytes.
-    #[must_use]
     pub fn from_unreadable_file(name: &[u8]) -> Self {
         let stderr =
             [&b"\x1b[31;1mERROR IN TWODSCENEXMLPARSER:\x1b[m XML scene file "[..], name, b". Failed to read file.\n"]

@@ -27,14 +27,12 @@ pub struct PointMotion {
 
 impl PointMotion {
     /// Returns the motion of particle `index` between two arrays of positions in trace order.
-    #[must_use]
     pub fn from_positions(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
         let start = vector_at(q_start, index);
         Self { start, shift: vector_at(q_end, index) - start }
     }
 
     /// Returns the position at `time`, a fraction of the step.
-    #[must_use]
     pub fn position_at(&self, time: f64) -> Vec2 {
         self.start + time * self.shift
     }
@@ -77,7 +75,6 @@ impl PairMotion {
     ///
     /// # Panics
     /// Panics if the scene or an array lacks one of the objects.
-    #[must_use]
     pub fn from_positions(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let point = |index| PointMotion::from_positions(q_start, q_end, index);
@@ -100,7 +97,6 @@ impl PairMotion {
     }
 
     /// Returns the kind of the second object.
-    #[must_use]
     pub const fn kind(&self) -> PairKind {
         match self {
             Self::Particles { .. } => PairKind::ParticleParticle,
@@ -132,7 +128,6 @@ impl PairMotion {
     }
 
     /// Returns the detection polynomials in the order of the trace, with nothing dropped (collisions.md 2).
-    #[must_use]
     pub fn polynomials(&self) -> Vec<Polynomial> {
         self.padded_polynomials()[..self.kind().polynomial_count()].to_vec()
     }
@@ -169,7 +164,6 @@ impl PairMotion {
 
     /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` (no hit) if it
     /// is zero between a particle and an edge.
-    #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {
             Self::Particles { centers: [one, two], .. } => {

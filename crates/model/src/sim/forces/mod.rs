@@ -109,7 +109,6 @@ impl Forces {
 
 /// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in acting order. The penalty
 /// force, if there is one, comes last.
-#[must_use]
 pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
     let (bodies, Forces { list, penalty }) = (Bodies::new(scene), Forces::new(scene));
     let alone = list.into_iter().map(|force| Forces { list: vec![force], penalty: None });

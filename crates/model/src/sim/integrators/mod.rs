@@ -47,7 +47,6 @@ impl NewtonWork {
 /// Returns the minimum work of a step of the scene's integrator, in the unit of
 /// [`SearchCounts::work`](super::search::SearchCounts::work): an iteration of Newton's method, if that is used.
 /// Elimination takes n³ / 3 operations; a detection call takes a few hundred.
-#[must_use]
 pub fn min_work(scene: &Scene) -> u64 {
     if scene.integrator == Integrator::ImplicitEuler { 1 + (2 * scene.particles.len() as u64).pow(3) / 64 } else { 0 }
 }

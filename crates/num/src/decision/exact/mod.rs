@@ -42,7 +42,6 @@ pub enum ExactAnswer {
 ///   right after 0.
 /// * Without polynomials, or with one that is empty or zero, the answer is [`ExactAnswer::Never`].
 /// * `c t^m` keeps its sign; the original treats it as nowhere positive (root-finder.md 17.1).
-#[must_use]
 pub fn find_exact_first_time(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.iter().any(|list| list.iter().any(|value| !value.is_finite())) {
         return ExactAnswer::NotFinite;

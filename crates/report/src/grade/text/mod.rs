@@ -49,7 +49,6 @@ pub struct Text<'a> {
 
 impl Text<'_> {
     /// Renders the report on all grades.
-    #[must_use]
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
         if self.detail == TextDetail::Table && grades.len() > 1 {
@@ -143,7 +142,6 @@ impl Text<'_> {
 }
 
 /// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
-#[must_use]
 pub fn describe_extra_points(grade: &Grade) -> String {
     grade.extra_points().map_or_else(String::new, |(reached, most)| {
         format!(

@@ -16,7 +16,6 @@ struct TextColumn {
 /// Renders one row per submission with the points, the worst verdict, the scenes of each group, and the time. If the
 /// table is too wide, columns are left out: first the time, then the groups, which are replaced by the total number of
 /// accepted scenes.
-#[must_use]
 pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
@@ -67,7 +66,6 @@ const GROUP_SUFFIX: &str = "Tests";
 const MAX_NAME_WIDTH: usize = 40;
 
 /// Shortens a name to the width of the table's column.
-#[must_use]
 pub fn shorten_name(name: &str) -> String {
     const END_WIDTH: usize = MAX_NAME_WIDTH / 2 - 2;
     if count_columns(name) <= MAX_NAME_WIDTH {

@@ -18,7 +18,6 @@ pub(crate) use letters::explain_letters;
 pub(crate) use places::describe_place;
 
 /// Describes the mistake in one sentence for the student. The sentence does not reveal a formula.
-#[must_use]
 pub fn describe(explanation: &Explanation) -> String {
     let sentence = match &explanation.topic {
         ExplanationTopic::Mistake => {
@@ -40,7 +39,6 @@ pub fn describe(explanation: &Explanation) -> String {
 
 /// Describes the mistake in a list of a program's mistakes, together with other mistakes that the traces can't
 /// distinguish from it.
-#[must_use]
 pub fn describe_with_alternatives(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.topic == ExplanationTopic::Mistake);
     let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
@@ -58,7 +56,6 @@ pub fn describe_with_alternatives(explanation: &Explanation) -> String {
 /// Returns lines with the exact form of the mistake: the terms of each coefficient, and the weights of the terms. The
 /// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, lines
 /// about other weights that fit are left out.
-#[must_use]
 pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));

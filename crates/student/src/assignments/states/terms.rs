@@ -349,13 +349,11 @@ pub struct Edit {
 
 impl Edit {
     /// Returns the area of the assignment to which the edit belongs.
-    #[must_use]
     pub const fn area(self) -> Area {
         self.term.row().area()
     }
 
     /// Returns whether the slip is an unwritten function of the starter code.
-    #[must_use]
     pub const fn is_empty_function(self) -> bool {
         matches!(self.slip, Slip::Missing) && self.term.row().is_function
     }

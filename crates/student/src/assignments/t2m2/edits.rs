@@ -24,7 +24,6 @@ pub struct NamedEdit {
 
 impl NamedEdit {
     /// Returns the changed polynomial, highest power first, or `None` if the change does not concern this polynomial.
-    #[must_use]
     pub fn polynomial(&self, subject: Subject, inputs: &Inputs) -> Option<Vec<BoundedValue>> {
         match self.edit {
             FormulaEdit::OtherInputs(change) if self.kinds.contains(&subject.kind()) => {

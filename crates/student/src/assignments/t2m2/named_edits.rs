@@ -33,7 +33,6 @@ fn drop_component(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut
 }
 
 /// Returns the change with the given key.
-#[must_use]
 pub fn find_edit(key: &str) -> Option<&'static NamedEdit> {
     NAMED_EDITS.iter().find(|edit| edit.key == key)
 }

@@ -6,7 +6,6 @@ use super::{
 use fosssim_findings::explanation::Reading;
 
 /// Returns the letter with a given name in messages: one of the formula's own, or a foreign one that may be used there.
-#[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();
     own.chain(extra_letters(reading.subject)).find(|letter| letter.name == name)

@@ -27,7 +27,6 @@ pub struct PenaltyPairs {
 
 impl PenaltyPairs {
     /// Creates the pairs for the bodies of a scene and the given thickness.
-    #[must_use]
     pub fn new(scene: &Scene, thickness: f64, detection: CollisionDetection) -> Self {
         let is_contest = detection == CollisionDetection::Contest;
         Self {

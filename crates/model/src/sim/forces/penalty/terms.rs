@@ -19,7 +19,6 @@ pub struct PenaltyTerms {
 
 impl PenaltyTerms {
     /// Returns the terms of a scene with `penalty` handling, or `None` for other scenes.
-    #[must_use]
     pub fn for_scene(scene: &Scene) -> Option<Self> {
         let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };
         let gradient = vec![0.0; 2 * scene.particles.len()];
