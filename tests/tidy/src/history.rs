@@ -8,15 +8,12 @@ const LONGEST_SUBJECT: usize = 72;
 /// The time from which on subjects follow this rule.
 const SINCE: &str = "2026-11-26T22:00:00Z";
 
-/// A longer subject that was published before anyone noticed; published history is not rewritten.
-const PUBLISHED: &str = "messages: say what is compared, contained and rejected in whole sentences";
-
 /// Returns what is wrong with the subject of a commit.
 fn fault(subject: &str) -> Option<&'static str> {
     if subject.split_once(": ").is_none_or(|(scope, _)| scope.trim().is_empty()) {
         return Some("has no scope");
     }
-    if subject.chars().count() > LONGEST_SUBJECT && subject != PUBLISHED {
+    if subject.chars().count() > LONGEST_SUBJECT {
         return Some("is longer than 72 characters");
     }
     (subject.contains(';') || subject.contains("/tmp")).then_some("names two changes, or a path")
