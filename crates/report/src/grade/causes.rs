@@ -60,10 +60,9 @@ pub(crate) fn is_listed(scene: &SceneGrade) -> bool {
 }
 
 /// Returns texts that are equal for scenes whose verdicts have the same cause: the end of the program, its likely
-/// mistakes, the kind of the first finding, or the summary without numbers. Scenes that the rule books judge
-/// differently have a cause of their own.
+/// mistakes, the kind of the first finding, or the summary without numbers. Each accepted scene has a cause of its own.
 fn describe_cause(scene: &SceneGrade) -> Vec<String> {
-    if scene.verdict.is_accepted() || scene.difference_cause.is_some() {
+    if scene.verdict.is_accepted() {
         return vec![scene.scene.clone()];
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
@@ -82,6 +81,7 @@ fn describe_cause(scene: &SceneGrade) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::{super::samples, *};
+    use fosssim_findings::{Cause, result::BadTrace};
 
     /// A program that never ends is stopped on some scenes, and is not run on the many that follow.
     #[test]
@@ -91,5 +91,17 @@ mod tests {
         let names: Vec<Vec<&str>> =
             causes.iter().map(|scenes| scenes.iter().map(|scene| scene.scene.as_str()).collect()).collect();
         assert_eq!(names, [vec!["Detection/a"], vec!["Detection/b", "Detection/c"]]);
+    }
+
+    /// Bytes after the last record of every trace are one cause, although the fair rules accept them.
+    #[test]
+    fn wrong_scenes_on_which_the_rule_books_differ_can_share_a_cause() {
+        let mut grade = samples::accepted_grade();
+        for scene in &mut grade.groups[0].scenes {
+            scene.result.verdict = Verdict::BadTrace;
+            scene.result.reason = Reason::Trace(BadTrace::TrailingBytes);
+            scene.result.difference_cause = Some(Cause::TrailingBytes);
+        }
+        assert_eq!(group_by_cause(&grade).iter().map(Vec::len).collect::<Vec<_>>(), [2]);
     }
 }
