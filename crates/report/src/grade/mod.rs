@@ -34,7 +34,9 @@ pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::render_lines as json_lines;
 use phrases::describe_repeated_reason;
-pub(crate) use phrases::{count_wrong, describe_likely, describe_worth, detail_likely, head_likely};
+pub(crate) use phrases::{
+    count_wrong, describe_likely, describe_worth, describe_wrong_state, detail_likely, head_likely,
+};
 pub use phrases::{
     describe_difference, describe_missing_points, find_likely_mistakes, format_optional_points, format_points,
     format_score, head_lines,

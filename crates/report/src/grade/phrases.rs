@@ -40,19 +40,27 @@ pub(crate) fn head_likely(likely: &[(Explanation, usize)]) -> &'static str {
 /// Describes a likely mistake of a submission. Polynomials that no known mistake explains may follow from a state that
 /// was wrong before them; the text then names the state, and where to look.
 pub(crate) fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
-    match find_wrong_state(grade, mistake) {
-        Some(first) => format!(
-            "The first difference is a {}, which no known mistake explains. Look at the integrator, the forces, or the \
-             response.",
-            first.kind()
-        ),
-        None => words::explanation::describe_with_alternatives(mistake),
-    }
+    let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake)).flatten();
+    let state = scene.and_then(describe_wrong_state);
+    state.unwrap_or_else(|| words::explanation::describe_with_alternatives(mistake))
+}
+
+/// Describes the wrong state that comes first in a scene in which nothing explains the polynomials.
+pub(crate) fn describe_wrong_state(scene: &SceneGrade) -> Option<String> {
+    let first = find_wrong_state(scene)?;
+    let is_official = scene.disclosure.as_ref()?.official().first_divergence.as_ref() == Some(first);
+    let begin = if is_official { "The first" } else { "By the fair rules, the first" };
+    Some(format!(
+        "{begin} difference is a {}, which no known mistake explains. Look at the integrator, the forces, or the \
+         response.",
+        first.kind()
+    ))
 }
 
 /// Returns lines about the exact form of a likely mistake, or about the state that is wrong first.
 pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String> {
-    match find_wrong_state(grade, mistake) {
+    let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake)).flatten();
+    match scene.and_then(find_wrong_state) {
         Some(first) => {
             let line = words::describe_first(first);
             vec![words::explanation::capitalize(line.trim_start_matches("first difference: "))]
@@ -61,11 +69,13 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
     }
 }
 
-/// Returns the wrong position or velocity that comes first where nothing explains the polynomials.
-fn find_wrong_state<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a DisclosedFinding> {
-    let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake))??;
-    let first = scene.disclosure.as_ref()?.official().first_divergence.as_ref()?;
-    matches!(first.kind(), FindingKind::Position | FindingKind::Velocity).then_some(first)
+/// Returns the wrong position or velocity that comes first in a scene by the official rules, or else by the fair ones:
+/// the original's rules also reject polynomials for round-off.
+fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
+    let told = scene.disclosure.as_ref()?;
+    let firsts = [Some(told.official()), told.fair.as_ref()].into_iter().flatten();
+    let is_state = |first: &&DisclosedFinding| matches!(first.kind(), FindingKind::Position | FindingKind::Velocity);
+    firsts.filter_map(|book| book.first_divergence.as_ref()).find(is_state)
 }
 
 /// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is

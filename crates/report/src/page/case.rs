@@ -54,7 +54,7 @@ impl Case<'_> {
             (false, _) => "bad",
         };
         let explanations = if is_other_scene(check) { &[][..] } else { check.explanations };
-        let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some());
+        let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some(), None);
         let data = self.evidence.map(|evidence| data::render_blocks(self, evidence, key, Precision::Budgeted));
         let content = self.render_trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
         render_template(&CaseContent { check, key, look, content })
@@ -243,9 +243,14 @@ fn format_value(value: Value) -> String {
 }
 
 /// Renders explanations, each in its own box. If the first wrong values are shown next to them, an explanation's
-/// example is left out.
-pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
-    let parts = explanations.iter().map(|one| ExplanationParts::new(one, Style::ColorAndSigns));
+/// example is left out. If a wrong state is described, its text replaces the one about polynomials that nothing
+/// explains.
+pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool, wrong_state: Option<&str>) -> String {
+    let parts = explanations.iter().map(|one| {
+        let parts = ExplanationParts::new(one, Style::ColorAndSigns);
+        let sentence = wrong_state.filter(|_| one.is_unexplained()).map_or(parts.sentence, str::to_owned);
+        ExplanationParts { sentence, ..parts }
+    });
     render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }
 

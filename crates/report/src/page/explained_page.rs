@@ -91,7 +91,7 @@ impl ExplainedContent<'_> {
         let first = wrong.min_by_key(|&number| clarity_rank(all[number], common));
         let trace = |(number, (case, card)): (usize, ExplainedCase<'_>)| {
             let key = scene_key(&format!("{number} {}", case.scene));
-            let mistakes = mistakes(&case.explanations, card.is_some_and(Card::has_values));
+            let mistakes = mistakes(&case.explanations, card.is_some_and(Card::has_values), None);
             let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
             let motion = card.map(|card| card.data(&key)).unwrap_or_default();
             Trace { case: &cases[number], key, open: first == Some(number), shown, motion }
@@ -102,5 +102,5 @@ impl ExplainedContent<'_> {
 
 /// Renders a mistake that explains several traces.
 fn render_mistake(one: &Explanation) -> String {
-    mistakes(std::slice::from_ref(one), false)
+    mistakes(std::slice::from_ref(one), false, None)
 }

@@ -10,8 +10,9 @@ use crate::untrusted_text::{remove_escape_codes, to_one_line};
 use crate::{
     grade::{
         change_lines, clearest_scene, count_wrong, describe_difference, describe_extra_points, describe_likely,
-        describe_missing_points, describe_speed, describe_worth, detail_likely, find_likely_mistakes,
-        format_optional_points, format_points, format_score, group_by_cause, head_likely, is_listed,
+        describe_missing_points, describe_speed, describe_worth, describe_wrong_state, detail_likely,
+        find_likely_mistakes, format_optional_points, format_points, format_score, group_by_cause, head_likely,
+        is_listed,
     },
     number::format_count,
     words::{self, explanation::capitalize},
@@ -220,7 +221,7 @@ impl<'a> Article<'a> {
         // A detail is left out if the card already shows it together with the values.
         let is_shown = room != CardDetail::Words && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
-        let mistakes = mistakes(&scene.corrected_explanations, is_shown);
+        let mistakes = mistakes(&scene.corrected_explanations, is_shown, describe_wrong_state(scene).as_deref());
         let no_room = |what: &str| format!("<p class=\"hint\">This page has no space for {what}.</p>\n");
         let shown = match (card, room) {
             (None, _) => mistakes,

@@ -8,7 +8,8 @@ use fosssim_findings::smallest_scene::SmallestScene;
 /// Renders a smallest scene, and its card if it has one. `number` counts the smallest scenes of the page from 1.
 pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
     let key = format!("small-{number}");
-    let mistakes = mistakes(&small.explanations[..small.explanations.len().min(1)], card.is_some_and(Card::has_values));
+    let most_likely = &small.explanations[..small.explanations.len().min(1)];
+    let mistakes = mistakes(most_likely, card.is_some_and(Card::has_values), None);
     let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
     render_template(&SmallestContent { small, card, number, key: &key, shown })
 }

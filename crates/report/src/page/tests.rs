@@ -9,7 +9,7 @@ use fosssim_grading::{
     result::WrongTrace,
     score,
 };
-use fosssim_judge::{Outcome, Rules, replay};
+use fosssim_judge::{Book, FindingKind, Outcome, Rules, replay};
 use fosssim_mistakes::{
     diagnose::{self, Explanation},
     together::disclosure::limit_explanations,
@@ -404,12 +404,23 @@ fn a_wrong_position_is_named_before_the_polynomials_that_follow_from_it() {
     fosssim_mistakes::together::reconcile_explanations(&mut grade);
     let html = GradePage { grade: &grade, card: &|_| None, class: None, reader: Audience::Staff }.html();
     assert!(html.contains("<h2>What differs</h2>") && !html.contains("<h2>Likely mistake"), "{html}");
-    let words = "The first difference is a wrong position, which no known mistake explains.";
-    for report in
-        [html, crate::grade::json(std::slice::from_ref(&grade)), crate::formats::Format::Text.render(&[grade])]
-    {
-        assert!(report.contains(words), "{report}");
+    // The card of the scene says the same as the head of the page.
+    assert!(!html.contains("No simple mistake"), "{html}");
+    let words = "he first difference is a wrong position, which no known mistake explains.";
+    for report in [
+        html,
+        crate::grade::json(std::slice::from_ref(&grade)),
+        crate::formats::Format::Text.render(std::slice::from_ref(&grade)),
+    ] {
+        assert!(report.contains(&format!("T{words}")), "{report}");
     }
+    // The original's rules can reject a polynomial before.
+    let told = grade.groups[0].scenes[0].result.disclosure.as_mut().expect("a disclosure");
+    let wrong = told.parity.examples.iter().find(|one| one.kind() == FindingKind::Coefficient).cloned();
+    assert!(wrong.is_some(), "{told:?}");
+    (told.official, told.parity.first_divergence) = (Book::Parity, wrong);
+    let text = crate::formats::Format::Text.render(&[grade]);
+    assert!(text.contains(&format!("By the fair rules, t{words}")), "{text}");
 }
 
 fn with_results(marking: Marking, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {
