@@ -237,7 +237,11 @@ function showMarks(suite, grade, rows, strange) {
     );
   });
   $("marks-list").replaceChildren(
-    el("h2", {}, `${right.size} of ${counted(rows.length, "scene")} right`),
+    el(
+      "h2",
+      {},
+      `${suite.suite}: ${grade.points} of ${grade.of} points, ${right.size} of ${counted(rows.length, "scene")} right`,
+    ),
     ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []),
     ...other,
     ...since,
