@@ -34,6 +34,8 @@ struct Home {
 /// A course of the person on the home page.
 struct HomeCourse {
     member: Member,
+    /// Whether the person sees the course as administrator, without being a member.
+    is_guest: bool,
     /// The course's assignments that accept submissions at present.
     assignments: Vec<Row>,
     /// The number of the course's assignments that are not listed.
@@ -61,7 +63,8 @@ pub(super) async fn home(person: Person) -> Page {
         }
         let member = person.clone().member_of(&course.course.slug).await?;
         let (assignments, closed): (Vec<Row>, Vec<Row>) = rows(&member).await?.into_iter().partition(Row::is_open);
-        courses.push(HomeCourse { member, assignments, rest: closed.len() });
+        let is_guest = course.role == "admin";
+        courses.push(HomeCourse { member, is_guest, assignments, rest: closed.len() });
     }
     let checks_traces = person.app.checker.is_some();
     show(&Home { frame, name: person.account.name, courses, others, checks_traces })

@@ -45,6 +45,13 @@ struct GradesPage {
     hides: bool,
 }
 
+impl GradesPage {
+    /// Returns whether a regrade waits to be applied or discarded.
+    fn is_regrading(&self) -> bool {
+        self.regrades.iter().any(|regrade| regrade.state == RegradeState::Open)
+    }
+}
+
 #[derive(Template)]
 #[template(path = "regrade.html")]
 struct RegradePage {
