@@ -463,15 +463,17 @@ mod tests {
         let sources = folder.path().join("sources");
         std::fs::create_dir(&sources).unwrap();
         File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
-        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("not a submission"));
+        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("too much for a submission"));
     }
 
     #[test]
-    fn this_very_program_is_no_submission_under_any_name() {
-        let own = std::env::current_exe().unwrap();
+    fn a_grader_of_any_build_is_no_submission_under_any_name() {
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join("FOSSSim");
-        std::fs::copy(own, &copy).unwrap();
+        let mut bytes = std::fs::read("/bin/sh").unwrap();
+        bytes.extend(fosssim_sandbox::MARK_BACKWARDS.iter().rev());
+        bytes.push(0);
+        std::fs::write(&copy, bytes).unwrap();
         assert_eq!(program(&copy).unusable_reason, Some(UnusableReason::CouldNotStart(StartProblem::GradersOwn)));
     }
 }
