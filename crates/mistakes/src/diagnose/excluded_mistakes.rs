@@ -51,9 +51,9 @@ fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explana
 const NAMED_PER_CONTRADICTION: usize = 8;
 
 /// Returns whether traces contradict a mistake of a stage: the same stage is wrong in another way, although the mistake
-/// would show there, and no other known mistake explains it. A formula's own polynomials contradict it
-/// ([`evidence`](super::evidence)).
-fn is_contradicted(key: &str, wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
+/// would show there, and no other known mistake explains it. Where one of the other likely mistakes (`others`) would
+/// show as well, both may be made. A formula's own polynomials contradict it ([`evidence`](super::evidence)).
+fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
     let Some(row) = find(key).filter(|row| !is_formula_area(row.area)) else { return false };
     let (stage, is_of_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
     if !is_of_state && (stage.is_none() || is_empty_stage(row)) {
@@ -72,7 +72,9 @@ fn is_contradicted(key: &str, wrong: &[(&Scene, &[Explanation])], refuted: &[Str
     let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
     let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
     let work = Cell::new(0);
-    let against = wrong.iter().filter(|(scene, list)| is_open(list) && mistake_is_visible_within(scene, key, &work));
+    let shows = |scene: &Scene, key: &str| mistake_is_visible_within(scene, key, &work);
+    let is_alone = |scene: &Scene| !others.iter().any(|other| *other != key && shows(scene, other));
+    let against = wrong.iter().filter(|(scene, list)| is_open(list) && shows(scene, key) && is_alone(scene));
     explained > 0 && against.take(needed).count() == needed
 }
 
@@ -98,7 +100,8 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
         // An explanation of unfinished work includes all its empty stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
-        let is_false = |key: &str| is_denied(key, &Cell::new(0)) || is_contradicted(key, wrong, &refuted);
+        let others: Vec<&str> = keys.clone().map(String::as_str).collect();
+        let is_false = |key: &str| is_denied(key, &Cell::new(0)) || is_contradicted(key, &others, wrong, &refuted);
         match keys.find(|key| is_false(key)).cloned() {
             Some(key) => refuted.push(key),
             None => {
