@@ -16,12 +16,12 @@
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
 //! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-//! # for _ in 0..scene.steps() {
+//! # for _ in 0..scene.step_count() {
 //! #     simulation.step(&mut recorder)?;
 //! # }
 //! # let (trace, _) = recorder.finish()?;
 //!
-//! let options = Options { fair: true, ..Options::default() };
+//! let options = Options { uses_fair_rules: true, ..Options::default() };
 //! let examined = examine(&scene, &trace[..], KeptPart::All, &options, &mut ());
 //! assert_eq!(examined.outcome.parity.findings.wrong_steps, 0);
 //! assert!(examined.explain().is_empty());

@@ -10,10 +10,10 @@
 //! - **Written files appear whole** ([`Replacement`]), and replace files of the same name.
 //!
 //! ```
-//! use fosssim_files::Place;
+//! use fosssim_files::FilePlace;
 //!
 //! let folder = tempfile::tempdir()?;
-//! let place = Place::new(folder.path(), "report.txt");
+//! let place = FilePlace::new(folder.path(), "report.txt");
 //! place.write(b"right")?;
 //! assert_eq!(place.read(1024)?, b"right");
 //! # Ok::<(), Box<dyn std::error::Error>>(())

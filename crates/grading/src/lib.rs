@@ -7,7 +7,7 @@
 //! ```
 //! use fosssim_grading::plan;
 //!
-//! let plan = plan::find("t2m2")?;
+//! let plan = plan::find_suite("t2m2")?;
 //! assert!(plan.scenes().count() > 100);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

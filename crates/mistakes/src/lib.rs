@@ -11,7 +11,7 @@
 //! # let scene = scene::read("a ball", text)?.scene;
 //! # let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
 //! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-//! # for _ in 0..scene.steps() {
+//! # for _ in 0..scene.step_count() {
 //! #     simulation.step(&mut recorder)?;
 //! # }
 //! # let (trace, _) = recorder.finish()?;

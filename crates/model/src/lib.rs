@@ -15,7 +15,7 @@
 //! </scene>"#;
 //! let scene = scene::read("a ball", text)?.scene;
 //! let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
-//! for _ in 0..scene.steps() {
+//! for _ in 0..scene.step_count() {
 //!     simulation.step(&mut ())?;
 //! }
 //! assert_eq!(simulation.state().positions, [2.0, 0.0]);

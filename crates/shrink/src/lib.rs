@@ -28,9 +28,9 @@
 //!
 //! let reason = WrongReason::first_reason(&scene, &run(&scene)).expect("it is wrong");
 //! let begin = step_starts(&scene, &run(&scene).trace, &[1]);
-//! let mut holds = |scene: &_, is_alone| Some(reason.holds(scene, &run(scene), is_alone));
+//! let mut holds = |scene: &_, is_alone| Some(reason.is_reproduced(scene, &run(scene), is_alone));
 //! let found = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
-//! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
+//! assert_eq!((found.scene.step_count(), found.scene.particles.len()), (1, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]

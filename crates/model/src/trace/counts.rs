@@ -20,7 +20,7 @@ use std::fmt;
 /// let scene = original::read(xml).expect("a scene").scene;
 /// let mut simulation = Simulation::new(&scene, RootSearch::default());
 /// let mut counts = EventCounts::new(&scene);
-/// for _ in 0..scene.steps() {
+/// for _ in 0..scene.step_count() {
 ///     simulation.step(&mut counts)?;
 /// }
 /// let calls: u64 = counts.calls.values().sum();

@@ -27,7 +27,7 @@ pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 ///     frames += 1;
 /// }
 /// assert_eq!(frames, 2);
-/// assert_eq!(reader.trailing()?, 0);
+/// assert_eq!(reader.count_trailing_bytes()?, 0);
 /// # Ok::<(), fosssim_model::trace::TraceError>(())
 /// ```
 #[derive(Debug)]

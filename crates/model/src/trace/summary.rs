@@ -31,7 +31,7 @@ const MAX_COLLISIONS: usize = 40;
 /// let scene = original::read(xml).expect("a scene").scene;
 /// let mut simulation = Simulation::new(&scene, RootSearch::default());
 /// let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-/// for _ in 0..scene.steps() {
+/// for _ in 0..scene.step_count() {
 ///     simulation.step(&mut recorder)?;
 /// }
 /// let (trace, _) = recorder.finish()?;
