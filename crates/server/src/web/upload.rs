@@ -253,8 +253,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
             let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
             match (said, are_traces) {
                 (Some(Form::Traces), false) => {
-                    Err("an archive of traces must contain one file NAME.bin for each scene, and nothing else"
-                        .to_owned())
+                    Err("an archive of traces may contain only files NAME.bin, one for a scene".to_owned())
                 }
                 (None, true) => Ok(Form::Traces),
                 (Some(Form::Traces), true) => Ok(Form::Traces),

@@ -1,8 +1,9 @@
 //! Collects the data for explanations of polynomials: detections with certain inputs, and their logged polynomials.
 //!
 //! The inputs of a detection pass are the start and the end positions of the step. The trace contains the start. The
-//! end is the integrator's result, before any response. The samples are therefore from the first pass of each step, and
-//! in hybrid scenes also from the first pass of the geometric part, which starts from the mid record.
+//! end is the reference integrator's result, before any response. The samples are therefore from the first pass of each
+//! step, and in hybrid scenes also from the first pass of the geometric part, which starts from the mid record. A wrong
+//! polynomial that is right for the positions of the mid record shows another integrator, and is left out.
 use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
@@ -186,12 +187,19 @@ impl StepController for SampleCollector<'_> {
             // A NaN or an infinity proves nothing about a formula.
             return;
         }
-        let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
-        let is_right = size == pair.kind.polynomial_count()
-            && polynomials.iter().enumerate().all(|(number, logged)| {
-                let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
-                forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
-            });
+        let is_right_until = |q_end: &[f64]| {
+            let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
+            size == pair.kind.polynomial_count()
+                && polynomials.iter().enumerate().all(|(number, logged)| {
+                    let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
+                    forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
+                })
+        };
+        let is_right = is_right_until(q_end);
+        if !is_right && pass == 0 && is_right_until(&self.mid.state.positions) {
+            // The submission's integrator went elsewhere, and the formulas are right.
+            return;
+        }
         let kind = &self.samples_by_kind[pair.kind];
         if if is_right { kind.right_count >= MAX_RIGHT } else { kind.wrong_count >= MAX_WRONG } {
             return;

@@ -178,6 +178,9 @@ fn traces_of_the_same_stage_contradict_a_mistake() {
     assert_eq!(refuted(8, &of_zones), ["zones-all-in-one"]);
     assert!(refuted(9, &of_zones).is_empty());
     assert!(refuted(3, &[row("failsafe-degrees", &[])]).is_empty(), "another mistake explains the trace");
+    let partner = [row("failsafe-empty", &[])];
+    let wrong = [&named[..], &partner, &partner, &of_zones].map(|list| (scene, list));
+    assert!(refuted_keys(None, &wrong, &[]).is_empty(), "the program makes both mistakes");
     let of_rounds = StageFault::FirstRound;
     assert!(refuted(3, &fault(of_rounds)).is_empty(), "another stage");
 }

@@ -33,6 +33,20 @@ fn a_mistake_beside_another_is_told_once() {
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
 
+/// With another integrator the polynomials are right for the positions that it predicts.
+#[test]
+fn polynomials_of_other_predicted_positions_are_no_mistake() {
+    let row = student::find("linear-missing").expect("it is known");
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2/ImpulsesTests");
+    #[expect(clippy::disallowed_methods, reason = "a test reads the scenes that come with the program")]
+    let xml = std::fs::read(folder.join("fixed-ball-drifts-into-a-fixed-one.xml")).expect("a bundled scene");
+    let scene = fosssim_model::scene::original::read(&xml).expect("a scene").scene;
+    let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).expect("a whole trace");
+    let explained = explain(&scene, &trace);
+    let is_of_polynomials = |one: &Explanation| matches!(one.topic, ExplanationTopic::Polynomials { .. });
+    assert!(!explained.iter().any(is_of_polynomials), "{explained:#?}");
+}
+
 /// One of many traces suggests that a stage is empty, in addition to a mistake that all of them show.
 #[test]
 fn one_of_many_traces_makes_no_stage_empty() {

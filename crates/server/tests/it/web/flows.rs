@@ -226,7 +226,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert_eq!(finished()["submissions"], 3);
     let page = admin.get(&format!("/c/physics/a/m1/regrades/{id}")).expect(200).text();
     assert!(page.contains("Why: rules: the suite"), "{page}");
-    assert!(page.contains("settings change, too") && !page.contains("The grader failed on"), "{page}");
+    assert!(page.contains("settings also change") && !page.contains("The grader failed on"), "{page}");
     let applied = admin.post_json(&format!("{base}/{id}/apply"), "").expect(200).json();
     assert_eq!(applied["state"], "applied");
     let log = admin.get("/c/physics/audit").expect(200).text();

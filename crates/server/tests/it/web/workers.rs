@@ -111,7 +111,7 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
     let id = id["id"].as_i64().expect("a number");
     assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "30");
     let refused = ada.send("POST", &format!("{path}&form=traces"), &[], &sources).expect(422);
-    assert!(refused.text().contains("an archive of traces holds files NAME.bin"), "{}", refused.text());
+    assert!(refused.text().contains("an archive of traces may contain only files NAME.bin"), "{}", refused.text());
     let queue = admin.get("/api/v1/queue").expect(200).json();
     assert!(queue["workers"][0]["name"].as_str().expect("a name").starts_with("lab/same."), "{queue}");
     // A worker that is asked to stop gives back what it has, and nobody counts a failure.
