@@ -563,7 +563,7 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
       () => document.documentElement.dataset.looked === document.getElementById("command").textContent,
     );
   await settled();
-  assert.match(await page.locator("#decision").innerText(), /they collide|collision/);
+  assert.match(await page.locator("#decision").innerText(), /they collide|collision/i);
   const before = await page.locator("#command").innerText();
   // The tip of the first arrow goes up and back, away from the other particle.
   const box = await page.locator("#sketch .grip").first().boundingBox();
@@ -579,7 +579,7 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
   // A hand leaves few digits, and fields and sliders say the same.
   assert.ok(after.length < 90, after);
   assert.equal(Number(await page.getByRole("spinbutton", { name: "x1: dy" }).inputValue()), dy);
-  assert.match(await page.locator("#decision").innerText(), /no collision/);
+  assert.match(await page.locator("#decision").innerText(), /no collision/i);
   assert.deepEqual(complaints, []);
   await close();
 });

@@ -85,7 +85,7 @@ test("people sign in where their organization has them do so", async () => {
   await admin.goto(`${address}/c/physics/members`);
   await admin.getByLabel("Login", { exact: true }).fill("ada");
   await admin.getByLabel("Name", { exact: true }).fill("Ada");
-  await admin.getByRole("button", { name: "Save" }).click();
+  await admin.getByRole("button", { name: "Add", exact: true }).click();
   await admin.getByText("Change ada").click();
   await admin.getByRole("button", { name: "New link for ada" }).waitFor();
 

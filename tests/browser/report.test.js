@@ -260,7 +260,7 @@ test("a pair that is left out lights up, is selected, and is told with its calls
   // Its curves are on the page, with nothing beside them.
   assert.match(
     await page.locator("section[data-pair]").first().innerText(),
-    /Your trace has logged nothing for this pair/,
+    /Your trace contains no polynomials of this pair/,
   );
   assert.deepEqual(complaints, []);
   await close();
