@@ -103,13 +103,13 @@ fn resolve(
     let Suite {
         name,
         milestone,
-        command: run,
+        command,
         rules,
         staff_hints,
         show_output,
         build,
         limits,
-        skip_limits: patience,
+        skip_limits,
         notes,
         groups: patterns,
     } = suite;
@@ -149,19 +149,7 @@ fn resolve(
         }
         groups.push(Group { name: group.name, marking: group.marking, note: group.note, scenes });
     }
-    Suite {
-        name,
-        milestone,
-        command: run,
-        rules,
-        staff_hints,
-        show_output,
-        build,
-        limits,
-        skip_limits: patience,
-        notes,
-        groups,
-    }
+    Suite { name, milestone, command, rules, staff_hints, show_output, build, limits, skip_limits, notes, groups }
 }
 
 /// Reads and validates a suite, and finds its scenes.

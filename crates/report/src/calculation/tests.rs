@@ -3,7 +3,8 @@ use super::*;
 /// Renders the first step of a scene with this head, and these bodies and forces.
 fn text(integrator: &str, collision: &str, rest: &str) -> String {
     let xml = format!(
-        r#"<scene> <duration time="1"/> <integrator type="{integrator}" dt="0.5"/> <collision {collision}/> {rest} </scene>"#
+        r#"<scene> <duration time="1"/> <integrator type="{integrator}" dt="0.5"/> <collision {collision}/>
+            {rest} </scene>"#
     );
     let scene = fosssim_model::scene::read("small", xml.as_bytes()).expect("a scene").scene;
     first_step(&scene, None, 1).expect("a result")
