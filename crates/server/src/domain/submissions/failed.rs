@@ -21,14 +21,18 @@ pub struct AttemptChange {
     pub right: Vec<String>,
     /// The scenes that were accepted before, and are not now.
     pub wrong: Vec<String>,
+    /// Whether no scene is accepted now.
+    pub is_all_wrong: bool,
 }
 
 impl AttemptChange {
     /// Compares an attempt with the earlier attempt `since`.
-    pub fn compare(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
-        let names = |scenes: &FailedScenes| scenes.keys().cloned().collect::<BTreeSet<_>>();
+    pub fn compare(since: i64, old: &KeptResult, new: &KeptResult) -> Self {
+        let names = |kept: &KeptResult| kept.failed.keys().cloned().collect::<BTreeSet<_>>();
+        let is_all_wrong = !new.parts.scenes.is_empty() && !new.parts.scenes.contains('r');
         let (old, new) = (names(old), names(new));
-        Self { since, right: (&old - &new).into_iter().collect(), wrong: (&new - &old).into_iter().collect() }
+        let (right, wrong) = ((&old - &new).into_iter().collect(), (&new - &old).into_iter().collect());
+        Self { since, right, wrong, is_all_wrong }
     }
 }
 
@@ -86,7 +90,7 @@ impl Member {
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
             later.grade.as_ref().filter(|grade| grade.has_run())?;
-            let change = AttemptChange::compare(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
+            let change = AttemptChange::compare(earlier.number, kept.get(&old)?, kept.get(&new)?);
             Some((later.id, change))
         };
         Ok(graded.windows(2).filter_map(change).collect())
@@ -101,7 +105,15 @@ mod tests {
     fn an_attempt_makes_scenes_right_and_others_wrong() {
         let (old, new) = (read("WA a/b\nTLE a/c d\n"), read("WA a/c d\nRTE e"));
         assert_eq!(old["a/c d"], "TLE");
-        let change = AttemptChange::compare(3, &old, &new);
+        let kept = |failed, scenes: &str| KeptResult {
+            failed,
+            parts: GradeParts { scenes: scenes.to_owned(), ..GradeParts::default() },
+        };
+        let change = AttemptChange::compare(3, &kept(old, "we|r"), &kept(new, "re|e"));
+        assert!(
+            !change.is_all_wrong
+                && AttemptChange::compare(3, &kept(read(""), "r"), &kept(read("WA e"), "w")).is_all_wrong
+        );
         assert_eq!((change.right, change.wrong), (vec!["a/b".to_owned()], vec!["e".to_owned()]));
         assert_eq!(read(""), FailedScenes::new());
     }

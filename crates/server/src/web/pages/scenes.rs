@@ -32,6 +32,7 @@ pub(super) fn describe_change(change: &AttemptChange) -> String {
         ([], []) => format!("{since} no scene became right, and none wrong."),
         (right, []) if right.len() > MAX_NAMED => format!("{since} {} scenes became right.", right.len()),
         (right, []) => format!("{since} these became right: {}.", list(right)),
+        ([], [_, ..]) if change.is_all_wrong => format!("{since} no scene is right any more."),
         ([], wrong) => format!("{since} no longer right: {}.", list(wrong)),
         (right, wrong) => format!("{since} these became right: {}. No longer right: {}.", list(right), list(wrong)),
     }
@@ -44,10 +45,14 @@ mod tests {
     #[test]
     fn a_change_names_few_scenes() {
         let names = |count: usize| (0..count).map(|number| format!("s{number}")).collect::<Vec<_>>();
-        let of = |right, wrong| describe_change(&AttemptChange { since: 2, right: names(right), wrong: names(wrong) });
+        let change =
+            |right, wrong| AttemptChange { since: 2, right: names(right), wrong: names(wrong), is_all_wrong: false };
+        let of = |right, wrong| describe_change(&change(right, wrong));
         assert_eq!(of(0, 0), "Since submission 2, no scene became right, and none wrong.");
         assert_eq!(of(1, 1), "Since submission 2, these became right: s0. No longer right: s0.");
         assert_eq!(of(110, 0), "Since submission 2, 110 scenes became right.");
         assert_eq!(of(0, 8), "Since submission 2, no longer right: s0, s1, s2 and 5 more.");
+        let none = AttemptChange { is_all_wrong: true, ..change(0, 8) };
+        assert_eq!(describe_change(&none), "Since submission 2, no scene is right any more.");
     }
 }
