@@ -24,7 +24,7 @@ impl Confirmation {
 
 deeds! {
     remove_submission(staff: Staff, { course, id }, form: Confirmation):
-        { form.ensure_is(&id.to_string())?; staff.remove_submission(id) } => "/c/{course}";
+        { form.ensure_is(&staff.submission(id).await?.login)?; staff.remove_submission(id) } => "/c/{course}";
     remove_assignment(staff: Staff, { course, assignment }, form: Confirmation):
         { form.ensure_is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
     remove_course(admin: Admin, { course }, form: Confirmation):

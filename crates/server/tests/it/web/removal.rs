@@ -43,8 +43,8 @@ async fn what_is_removed_is_gone(fresh: Fresh) {
     // A submission is removed on its page, whose form names it.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{}", ids[0])).expect(200).text();
     assert!(page(&teacher).contains("permanently deleted") && !page(&ada).contains("permanently deleted"));
-    teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), "confirm=999").expect(400);
-    teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), &format!("confirm={}", ids[0])).expect(303);
+    teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), &format!("confirm={}", ids[0])).expect(400);
+    teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), "confirm=ada").expect(303);
     ada.get(&format!("/api/v1/courses/physics/submissions/{}", ids[0])).expect(404);
     assert_eq!(ada.wait_for_grade("physics", ids[1])["grade"]["points"], "1", "others stay");
     teacher.send("DELETE", &format!("/api/v1/courses/physics/submissions/{}", ids[1]), &[], b"").expect(204);
