@@ -210,7 +210,10 @@ async fn write_result(
         }
         _ => outcome.verdict.clone(),
     };
-    note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
+    match about.campaign {
+        None => note(transaction, &about, "graded", &text).await?,
+        Some(_) => note(transaction, &about, "regraded", &format!("{text}, if the regrade is applied")).await?,
+    }
     Ok(about)
 }
 

@@ -102,8 +102,12 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
          WHERE result.points = '50'",
     );
     assert!(halves.await >= all / 2);
-    let told = number(&fresh, "SELECT count(*) AS n FROM event WHERE kind = 'grade changed'");
-    assert_eq!(told.await, changed);
+    let told = number(
+        &fresh,
+        "SELECT count(*) AS n FROM event WHERE kind = 'grade changed'
+         AND text LIKE 'another rule: %, now v, %0 points'",
+    );
+    assert_eq!(told.await, changed, "entries have the grades before and after");
     // Changes are listed page by page.
     let (mut seen, mut after) = (0, serde_json::json!(0));
     while !after.is_null() {

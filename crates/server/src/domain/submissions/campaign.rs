@@ -40,6 +40,19 @@ pub(in crate::domain) async fn enqueue_missing(
     Ok(transaction.execute(statement, &values).await?)
 }
 
+/// Writes the verdict and the points of a result in SQL, such as `wrong answer, 68.09 points`. Both engines round to a
+/// number with a decimal point, so its last zeros and the point are of no use.
+macro_rules! grade_text {
+    ($result:literal) => {
+        concat!(
+            $result,
+            ".verdict || coalesce(', ' || rtrim(rtrim(CAST(round(CAST(",
+            $result,
+            ".points AS numeric), 2) AS TEXT), '0'), '.') || ' points', '')"
+        )
+    };
+}
+
 /// Makes the results of a regrade count, because a person requested it, and stores the reason for students. If the
 /// grader failed on a submission, its old grade stays.
 pub(in crate::domain) async fn apply(
@@ -54,14 +67,20 @@ pub(in crate::domain) async fn apply(
         FROM result LEFT JOIN grade ON grade.submission = result.submission
         WHERE result.campaign = ? AND result.code <> ?";
     transaction.execute(statement, values![by, campaign, reason, campaign, JUDGE_ERROR]).await?;
-    let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+    let statement = concat!(
+        "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
-           CAST(? AS TEXT)
+           CAST(? AS TEXT) || ': ' || coalesce(",
+        grade_text!("old"),
+        ", 'no grade') || ', now ' || ",
+        grade_text!("result"),
+        "
         FROM result LEFT JOIN grade ON grade.submission = result.submission
         LEFT JOIN result AS old ON old.id = grade.result
         WHERE result.campaign = ? AND result.code <> ?
            AND (old.id IS NULL OR old.code <> result.code
-               OR coalesce(old.points, '') <> coalesce(result.points, ''))";
+               OR coalesce(old.points, '') <> coalesce(result.points, ''))"
+    );
     transaction.execute(statement, values![by, course, assignment, reason, campaign, JUDGE_ERROR]).await?;
     let statement = "INSERT INTO grade (submission, result, set_at)
         SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
