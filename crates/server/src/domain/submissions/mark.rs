@@ -40,6 +40,8 @@ pub struct Request {
     pub login: String,
     /// The student's question about the grade.
     pub text: String,
+    /// The time of the request, in milliseconds since 1970.
+    pub requested_at: i64,
 }
 
 /// The numbers that describe an assignment in its course's table.
@@ -60,7 +62,7 @@ pub struct Overview {
 }
 
 from_row! { Overview { students, handed_in, submissions, requests, regrades, slots } }
-from_row! { Request { submission, number, login, text = "request" } }
+from_row! { Request { submission, number, login, text = "request", requested_at } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
@@ -141,7 +143,8 @@ impl Staff {
     /// Fails if there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
-        let statement = "SELECT mark.submission, submission.number, mark.request, account.login FROM mark
+        let statement =
+            "SELECT mark.submission, submission.number, mark.request, mark.requested_at, account.login FROM mark
             JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
             WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
             ORDER BY mark.requested_at";

@@ -30,9 +30,13 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
 /// Returns the likely mistake that a submission's summary names, or the reason why the submission was not run. Long
 /// texts are cut.
 pub(super) fn short_mistake(summary: &str) -> String {
-    let mistake = summary.split_once("; ").map_or("", |(_, mistake)| mistake);
-    let beginning: String = mistake.chars().take(110).collect();
-    if beginning.len() < mistake.len() { beginning + "..." } else { beginning }
+    shorten(summary.split_once("; ").map_or("", |(_, mistake)| mistake))
+}
+
+/// Cuts a text that is too long for a cell of a table.
+pub(super) fn shorten(text: &str) -> String {
+    let beginning: String = text.chars().take(110).collect();
+    if beginning.len() < text.len() { beginning + "..." } else { beginning }
 }
 
 /// Formats a verdict's code and the points.

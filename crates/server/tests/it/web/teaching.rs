@@ -163,11 +163,15 @@ fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
 /// A request has the submission's number among those of its owner, and nothing is said of scenes that did not run.
 fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     eve.post_form(&format!("/c/physics/s/{mended}/request"), "text=Is+it").expect(303);
-    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("eve, submission 2</a>: Is it"));
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(
+        class.contains("eve, submission 2</a> <span class=\"names\"><time") && class.contains(": Is it"),
+        "{class}"
+    );
     let unusable = eve.submit("physics", &program("US", 0));
     eve.wait_for_grade("physics", unusable);
     let page = eve.get(&format!("/c/physics/s/{unusable}")).expect(200).text();
-    assert!(page.contains("because nothing ran") && !page.contains("o longer right"), "{page}");
+    assert!(page.contains("fix what the report names first") && !page.contains("o longer right"), "{page}");
 }
 
 /// Two submissions are compared, by number or by login.
