@@ -23,7 +23,7 @@ pub use courses::members::MemberInfo;
 pub use platforms::choice::{LinkStep, LinkTarget, slug_of};
 pub use platforms::launch::{LaunchTarget, LoginAnswer, LoginRequest};
 pub use platforms::platform::{RosterRead, RosterWish, ScoreInfo};
-pub use roles::admin::{Admin, CourseSize};
+pub use roles::admin::{Admin, CourseSize, ListedAccount};
 pub use roles::member::Member;
 pub use roles::person::{CourseMembership, Person};
 pub use roles::remote::Remote;

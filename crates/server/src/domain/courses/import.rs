@@ -104,6 +104,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let checked = check_member(&login, &name, &role);
         let error = match checked {
             Err(_) if login.is_empty() => Some("this line has no login".to_owned()),
+            Err(_) if name.is_empty() => Some("this line has no name".to_owned()),
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("the login appears twice in the table".to_owned()),
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
@@ -117,14 +118,14 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
 }
 
 impl Staff {
-    /// Adds all members in a table if no line has an error. With `preview`, the table is only read.
+    /// Adds all members in a table if no line has an error. With `preview`, nobody is added.
     ///
     /// # Errors
     ///
     /// Fails if the text is not a table, or if a member in it was changed after the event `seen`.
     pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
-        if preview || lines.iter().any(|line| line.error.is_some()) {
+        if lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
         }
         let mut transaction = self.begin().await?;
@@ -133,7 +134,15 @@ impl Staff {
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {
             self.check_seen(&mut transaction, ("member", None), &format!("{} is ", line.login), seen).await?;
-            line.link = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
+            match self.add(&mut transaction, &line.login, &line.name, &line.role).await {
+                Ok(link) => line.link = link,
+                Err(problem) if problem.status < 500 => line.error = Some(problem.detail),
+                Err(problem) => return Err(problem),
+            }
+        }
+        if preview || lines.iter().any(|line| line.error.is_some()) {
+            lines.iter_mut().for_each(|line| line.link = None);
+            return Ok(lines);
         }
         transaction.commit().await?;
         Ok(lines)

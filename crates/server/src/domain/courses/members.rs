@@ -20,12 +20,14 @@ pub struct MemberInfo {
     pub name: String,
     /// The member's role: `student` or `staff`.
     pub role: String,
+    /// Whether the account belongs to this course alone. Then staff may change its name, and make links for a student.
+    pub is_ours: bool,
 }
 
 /// The number of people that a page shows.
 pub(in crate::domain) const PEOPLE_PER_PAGE: i64 = 200;
 
-from_row! { MemberInfo { login, name, role } }
+from_row! { MemberInfo { login, name, role, is_ours } }
 
 /// Checks the login, the name and the role of a member.
 pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
@@ -41,14 +43,16 @@ impl Staff {
     /// Fails if the database does not answer.
     pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT account.login, account.name, member.role FROM member
+        let statement = "SELECT account.login, account.name, member.role,
+               CAST(CASE WHEN account.managed_by = member.course THEN 1 ELSE 0 END AS {int}) AS is_ours FROM member
             JOIN account ON account.id = member.account WHERE member.course = ? ORDER BY account.login";
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Makes a person a member, or changes their role. A missing account is created, with a link that signs in once.
-    /// Only an administrator may add an account that another course's staff made, because that course's staff can sign
-    /// in as this account.
+    /// Makes a person a member, or changes their role. A missing account is created, with a link that signs in once. A
+    /// member whose account belongs to this course alone gets the new name; administrators can rename all members. Only
+    /// an administrator may add an account that another course's staff made, because that course's staff can sign in as
+    /// this account.
     ///
     /// # Errors
     ///
@@ -114,18 +118,23 @@ impl Staff {
             self.add_account(transaction, account, login, role).await?;
             return Ok(self.link(transaction, account, self.sign_in_method()).await?);
         }
-        let found =
-            transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
+        let found = transaction
+            .one("SELECT id, name, managed_by FROM account WHERE login = ? {for update}", values![login])
+            .await?;
         let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
+        let is_admin = self.account.is_admin;
         let statement = "SELECT role FROM member WHERE course = ? AND account = ?";
         let was = transaction.row(statement, values![course, account]).await?;
         let was = was.map(|row| row.text("role")).transpose()?;
+        if was.is_some() && found.text("name")? != name && (is_admin || managed_by == Some(course)) {
+            transaction.execute("UPDATE account SET name = ? WHERE id = ?", values![name, account]).await?;
+            self.note(transaction, "member", None, &format!("{login} is renamed")).await?;
+        }
         if was.as_deref() == Some(role) {
             return Ok(None);
         }
         self.check_left(transaction, login, role).await?;
         let is_of_others = managed_by.is_some_and(|other| other != course);
-        let is_admin = self.account.is_admin;
         if is_of_others && !is_admin {
             let detail = format!("{login} is an account of another course; ask an administrator to add it");
             return Err(Problem::not_allowed(detail));

@@ -12,7 +12,7 @@ use crate::{
 };
 use serde::Serialize;
 use serde_json::Value;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use utoipa::ToSchema;
 
 /// The changes after a course's members were read from its platforms.
@@ -22,9 +22,9 @@ pub struct RosterRead {
     pub members: usize,
     /// The number of members who left.
     pub left: usize,
-    /// The logins of people who join.
+    /// The people who join, such as `Ada Lovelace (ada)`.
     pub comes: Vec<String>,
-    /// The logins of people who leave.
+    /// The people who leave, such as `Ada Lovelace (ada)`.
     pub goes: Vec<String>,
 }
 
@@ -190,10 +190,14 @@ impl Staff {
     ) -> Result<RosterRead, Problem> {
         let course = self.course;
         let mut transaction = self.begin().await?;
-        let members = "SELECT account.login FROM member JOIN account ON account.id = member.account
+        let members = "SELECT account.login, account.name FROM member JOIN account ON account.id = member.account
             WHERE member.course = ? ORDER BY account.login";
-        let logins = |rows: Vec<Row>| rows.iter().map(|row| row.text("login")).collect::<Result<BTreeSet<_>, _>>();
-        let before = logins(transaction.rows(members, values![course]).await?)?;
+        let person = |row: &Row| {
+            let login = row.text("login")?;
+            Ok((login.clone(), format!("{} ({login})", row.text("name")?)))
+        };
+        let people = |rows: Vec<Row>| rows.iter().map(person).collect::<Result<BTreeMap<_, _>, DbError>>();
+        let before = people(transaction.rows(members, values![course]).await?)?;
         let mut present = BTreeSet::new();
         for person in told {
             let Some(role) = person.role else { continue };
@@ -226,10 +230,13 @@ impl Staff {
                     WHERE platform_course.course = member.course AND platform_member.account = member.account)";
             transaction.execute(statement, values![course, account, platform.id]).await?;
         }
-        let after = logins(transaction.rows(members, values![course]).await?)?;
-        let (comes, goes) = (&after - &before, &before - &after);
+        let after = people(transaction.rows(members, values![course]).await?)?;
+        let missing_in = |others: &BTreeMap<_, _>, these: &BTreeMap<_, String>| {
+            these.iter().filter(|(login, _)| !others.contains_key(*login)).map(|(_, who)| who.clone()).collect()
+        };
+        let (comes, goes): (Vec<_>, Vec<_>) = (missing_in(&before, &after), missing_in(&after, &before));
         let (members, left) = (present.len(), goes.len());
-        let read = RosterRead { members, left, comes: comes.into_iter().collect(), goes: goes.into_iter().collect() };
+        let read = RosterRead { members, left, comes, goes };
         if wish == RosterWish::Preview {
             return Ok(read);
         }

@@ -27,6 +27,18 @@ pub struct CourseSize {
     pub(crate) submissions: i64,
 }
 
+/// An account in the list of all people.
+pub struct ListedAccount {
+    pub(crate) login: String,
+    pub(crate) name: String,
+    pub(crate) is_admin: bool,
+    /// The courses of the person, with the role if it is staff; `None` if there are none.
+    pub(crate) courses: Option<String>,
+    /// The last visit in milliseconds since 1970; `None` without a session, because old sessions are removed.
+    pub(crate) seen_at: Option<i64>,
+}
+
+from_row! { ListedAccount { login, name, is_admin, courses, seen_at } }
 from_row! { CourseSize { slug, title, staff, students, assignments, submissions } }
 
 /// Creates a course with a name and a title, and returns its number.
@@ -86,14 +98,19 @@ impl Admin {
 
     /// Returns a page of the accounts whose login or name contains `words`, in the order of logins, from the first one
     /// after `after`. The flag is true if there are more.
-    pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
+    pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<ListedAccount>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
+        let statement = "SELECT login, name, is_admin,
+               (SELECT string_agg(slug || CASE role WHEN 'staff' THEN ' (staff)' ELSE '' END, ', ')
+                   FROM (SELECT slug, role FROM course JOIN member ON member.course = course.id
+                       WHERE member.account = account.id ORDER BY slug) AS own) AS courses,
+               (SELECT max(seen_at) FROM session WHERE session.account = account.id) AS seen_at
+            FROM account WHERE disabled_at IS NULL AND login > ?
                AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
             ORDER BY login LIMIT ?";
         let (words, most) = (words.trim(), PEOPLE_PER_PAGE + 1);
         let values = values![after, words.to_lowercase(), words, most];
-        let mut accounts: Vec<Account> = transaction.all(statement, values).await?;
+        let mut accounts: Vec<ListedAccount> = transaction.all(statement, values).await?;
         let has_more = accounts.len() as i64 == most;
         accounts.truncate(PEOPLE_PER_PAGE as usize);
         Ok((accounts, has_more))
@@ -167,8 +184,11 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// Fails if its name is invalid.
+    /// Fails if its name is invalid, or a worker has it already.
     pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
+        let has_token = self.worker_tokens().await?.iter().any(|token| token.name == name);
+        let taken = Problem::conflict("this worker already has a token", "revoke it, or choose another name");
+        ensure(!has_token, taken)?;
         self.app.new_worker_token(name, self.account.id).await
     }
 
@@ -179,10 +199,10 @@ impl Admin {
     /// Fails if there is no token with this number.
     pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
-        let revoked = transaction.execute(statement, values![id]).await?;
-        ensure(revoked > 0, Problem::not_found("token"))?;
-        self.note(&mut transaction, "worker token", &format!("{id} is revoked")).await?;
+        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL
+            RETURNING name";
+        let row = transaction.row(statement, values![id]).await?.ok_or_else(|| Problem::not_found("token"))?;
+        self.note(&mut transaction, "worker token", &format!("{} is revoked", row.text("name")?)).await?;
         Ok(transaction.commit().await?)
     }
 
@@ -211,8 +231,7 @@ impl App {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.0.database.begin().await?;
         let token = identity::new_token(&mut transaction, None, name, by, SignInMethod::Own).await?;
-        let text = format!("{name} ({})", token.info.id);
-        view::note(&mut transaction, &Entry::new("worker token", by, &text)).await?;
+        view::note(&mut transaction, &Entry::new("worker token", by, name)).await?;
         transaction.commit().await?;
         Ok(token)
     }

@@ -9,7 +9,7 @@ use super::{
     redirect_to, show, text,
 };
 use crate::{
-    domain::{Account, Admin, App, CourseSize, Event, EventQuery, Queue, TokenInfo},
+    domain::{Admin, App, CourseSize, Event, EventQuery, ListedAccount, Queue, TokenInfo},
     lti::Platform,
     problem::Problem,
 };
@@ -33,7 +33,7 @@ struct AdminPage<'a> {
     /// The subject that this page shows.
     part: (&'static str, &'static str),
     courses: Vec<CourseSize>,
-    accounts: Vec<Account>,
+    accounts: Vec<ListedAccount>,
     look: People,
     /// The address of the next page of accounts; `None` on the last page.
     after: Option<String>,

@@ -52,15 +52,19 @@ struct ImportPage {
 }
 
 impl ImportPage {
-    fn count(&self, change: &str) -> usize {
-        self.lines.iter().filter(|line| line.change == change).count()
+    /// Describes how many people the import adds and changes.
+    fn describe_changes(&self) -> String {
+        let count = |change| self.lines.iter().filter(|line| line.change == change).count();
+        let [new, role, name, same] = ["new", "other role", "other name", "unchanged"].map(count);
+        let renamed = if name > 0 { format!("{name} with another name, ") } else { String::new() };
+        format!("{new} new, {role} with another role, {renamed}{same} unchanged")
     }
 }
 
 /// A row of an imported table, with the sign-in link if one was created.
 struct ImportRow {
     member: MemberLine,
-    /// The change that the import makes for this person: `new`, `other role` or `unchanged`.
+    /// The change that the import makes for this person: `new`, `other role`, `other name` or `unchanged`.
     change: &'static str,
     link: String,
     /// A mail message that contains the sign-in link, as a `mailto:` URL.
@@ -141,6 +145,7 @@ fn import_row(course: &str, before: &[MemberInfo], of: MemberLine) -> ImportRow 
     let change = match before.iter().find(|member| member.login == of.login) {
         None => "new",
         Some(member) if member.role != of.role => "other role",
+        Some(member) if member.is_ours && member.name != of.name => "other name",
         Some(_) => "unchanged",
     };
     let link = of.link.clone().unwrap_or_default();

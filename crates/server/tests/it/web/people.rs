@@ -6,6 +6,7 @@ use crate::support::{
 
 on_both_engines!(
     being_in_two_courses_takes_nothing_away,
+    a_name_is_changed_by_staff_of_its_course_alone,
     what_staff_could_have_planted_ends_when_rights_grow,
     ways_in_are_counted_by_network_and_bounded,
     tokens_make_no_further_ways_in,
@@ -50,6 +51,16 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
         refused["detail"].as_str().is_some_and(|said| said.contains("ask an administrator to add it")),
         "{refused}"
     );
+    // A table names the person in her line, and adds nobody.
+    let table = b"Zoe,zoe\nAda,ada\nBob,bob\n";
+    for question in ["?preview=true", ""] {
+        let csv = [("Content-Type", "text/csv"), ("Sec-Fetch-Site", "same-origin")];
+        let path = format!("/api/v1/courses/other/members{question}");
+        let lines = colleague.send("POST", &path, &csv, table).expect(200).json();
+        let error = lines[1]["error"].as_str().expect("an error");
+        assert!(error.contains("ask an administrator") && lines[0]["link"].is_null(), "{lines}");
+    }
+    assert_eq!(colleague.get("/api/v1/courses/other/members").expect(200).json().as_array().map(Vec::len), Some(1));
     ada.get("/api/v1/me").expect(200);
     assert_eq!(courses(&ada), 1);
     new_link(&colleague, "other", "ada").expect(404);
@@ -68,6 +79,29 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
     let third = server.member(&admin, "third", "third-teacher", "staff");
     assert!(add(&third, "third", "ada", "student")["link"].is_null());
     assert_eq!(courses(&ada), 3);
+}
+
+async fn a_name_is_changed_by_staff_of_its_course_alone(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    server.course(&admin, "other");
+    let teacher = server.member(&admin, "physics", "teacher", "staff");
+    add(&teacher, "physics", "ada", "student");
+    let rename = |by: &Client, name: &str| {
+        by.post_form("/c/physics/members", &format!("login=ada&name={name}&role=student")).expect(200);
+        let members = admin.get("/api/v1/courses/physics/members").expect(200).json();
+        members[0]["name"].as_str().expect("a name").to_owned()
+    };
+    assert_eq!(rename(&teacher, "Ada+King"), "Ada King");
+    assert!(teacher.get("/c/physics/audit").expect(200).text().contains("ada is renamed"));
+    // In two courses, she has one name, which the staff of neither may change.
+    add(&admin, "other", "ada", "student");
+    assert_eq!(rename(&teacher, "Eve"), "Ada King");
+    assert!(!teacher.get("/c/physics/members").expect(200).text().contains("Name of ada"));
+    assert_eq!(rename(&admin, "Ada+Lovelace"), "Ada Lovelace");
+    let people = admin.get("/admin/people").expect(200).text();
+    assert!(people.contains("other, physics") && people.contains("physics (staff)"), "{people}");
 }
 
 async fn what_staff_could_have_planted_ends_when_rights_grow(fresh: Fresh) {

@@ -246,7 +246,11 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     file(&held, &shown).expect(404);
     let tokens = admin.get("/api/v1/worker-tokens").expect(200).json();
     let id = &tokens[0]["id"];
+    // A page that is loaded again makes no second token.
+    admin.post_form("/admin/workers", "name=lab").expect(409);
     admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
+    let log = admin.get("/admin/log").expect(200).text();
+    assert!(log.contains(">lab<") && log.contains("lab is revoked"), "{log}");
     worker.post_json("/api/v1/worker/claim", "{}").expect(401);
 }
 
