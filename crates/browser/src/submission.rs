@@ -10,10 +10,7 @@ use fosssim_grading::{
     traces,
 };
 use fosssim_mistakes::together::disclosure::limit_result;
-use fosssim_report::{
-    grade,
-    words::{self, explanation},
-};
+use fosssim_report::{grade, words};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{Read, empty};
@@ -116,14 +113,15 @@ impl DroppedSubmission {
             |points, most| json!({ "points": grade::format_optional_points(points), "of": grade::format_points(most) });
         let scene = |scene: &SceneGrade| -> Value {
             let (points, most) = (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
-            let likely = scene.corrected_explanations.first().map(explanation::describe);
+            let likely = scene.corrected_explanations.first().map(|mistake| grade::describe_in_scene(scene, mistake));
             json!({ "points": points, "of": most, "likely": likely })
         };
         let scenes: Vec<Value> = graded.scenes().map(scene).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
-            let likely: Vec<String> = scenes[0].corrected_explanations.iter().map(explanation::describe).collect();
+            let likely = scenes[0].corrected_explanations.iter();
+            let likely: Vec<String> = likely.map(|mistake| grade::describe_in_scene(scenes[0], mistake)).collect();
             let words = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
             json!({ "words": words, "scenes": names })
         };

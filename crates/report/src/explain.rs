@@ -41,6 +41,7 @@ pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
 }
 
 /// The parts of a report's text about one explanation.
+#[derive(Default)]
 pub(crate) struct ExplanationParts {
     /// Whether the explanation is a likely mistake; otherwise it is only an observation.
     pub(crate) is_likely: bool,

@@ -1,9 +1,9 @@
 //! Output for GitHub Actions: one annotation for each cause of scenes that are not accepted, and a summary in Markdown.
 use super::{
-    super::explain,
     change_lines, describe_difference, describe_missing_points, format_optional_points, format_points, group_by_cause,
     head_lines, is_listed,
     phrases::{NOT_GRADED, list_first},
+    scene_sentence,
 };
 use crate::annotation::{join_annotation, render_annotation};
 use crate::untrusted_text::{clean_output, to_one_line};
@@ -36,9 +36,7 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
         for scene in wrong {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = format!("{}: {} {}", grade.submission, scene.scene, scene.verdict);
-            let words: Vec<String> = std::iter::once(words::summarize(scene))
-                .chain(explain::render_sentence(&scene.corrected_explanations))
-                .collect();
+            let words: Vec<String> = std::iter::once(words::summarize(scene)).chain(scene_sentence(scene)).collect();
             text += &render_annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
@@ -104,7 +102,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
             let scene = alike[0];
             let words: Vec<String> = std::iter::once(words::summarize(scene))
-                .chain(explain::render_sentence(&scene.corrected_explanations))
+                .chain(scene_sentence(scene))
                 .chain(describe_difference(scene))
                 .map(|words| escape_cell(&words))
                 .collect();

@@ -1,6 +1,6 @@
 //! The file results.json for Gradescope. If the grader failed, the file has no score: the harness then exits with an
 //! error instead of giving zero points.
-use super::{super::explain, describe_difference, describe_repeated_reason, describe_speed, format_points, head_lines};
+use super::{describe_difference, describe_repeated_reason, describe_speed, format_points, head_lines, scene_lines};
 use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{number::format_count, style::Style, view::to_document, words};
 use fosssim_findings::{
@@ -165,11 +165,7 @@ fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, strip_control_characters(&words::summarize(scene)))];
     lines.extend(describe_difference(scene));
     lines.extend(words::list_details(scene).iter().map(|detail| strip_control_characters(detail)));
-    lines.extend(
-        explain::explanation_texts(&scene.corrected_explanations, Style::Plain)
-            .iter()
-            .map(|line| strip_control_characters(line)),
-    );
+    lines.extend(scene_lines(scene, Style::Plain).iter().map(|line| strip_control_characters(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));
     }

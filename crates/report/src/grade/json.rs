@@ -1,5 +1,5 @@
 //! JSON in this program's own form (`schemas/grade.schema.json`). It contains everything in a grade.
-use super::{super::explain::ExplanationView, describe_likely, describe_speed, phrases::NOT_GRADED};
+use super::{super::explain::ExplanationView, describe_in_scene, describe_likely, describe_speed, phrases::NOT_GRADED};
 use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{
     check::CauseView,
@@ -27,6 +27,11 @@ fn view_likely(grade: &Grade, mistake: &Explanation) -> ExplanationView {
     let view = ExplanationView::from(mistake);
     let text = if mistake.is_unexplained() { describe_likely(grade, mistake) } else { view.text };
     ExplanationView { text, ..view }
+}
+
+/// Returns a scene's explanation in the words of the other reports.
+fn view_in_scene(scene: &SceneGrade, mistake: &Explanation) -> ExplanationView {
+    ExplanationView { text: describe_in_scene(scene, mistake), ..ExplanationView::from(mistake) }
 }
 
 /// The document that `grade --format json` writes. The version in `schema` increases if a program that reads the old
@@ -88,7 +93,8 @@ view! {
         /// scenes.
         located: Option<LocatedView> = grade.located_failure.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
-        likely_mistake: Option<ExplanationView> = find_likely_mistake(grade).as_ref().map(ExplanationView::from),
+        likely_mistake: Option<ExplanationView> =
+            find_likely_mistake(grade).map(|mistake| view_likely(grade, &mistake)),
         /// Up to three mistakes that together explain the wrong scenes, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
@@ -244,7 +250,8 @@ view! {
         /// The place of the first difference, and the number of findings of each kind, if the hints allow it.
         details: Vec<String> = words::list_details(scene).iter().map(|line| strip_control_characters(line)).collect(),
         /// The likely mistakes, the likeliest first, if the hints allow it.
-        explanations: Vec<ExplanationView> = scene.corrected_explanations.iter().map(ExplanationView::from).collect(),
+        explanations: Vec<ExplanationView> =
+            scene.corrected_explanations.iter().map(|mistake| view_in_scene(scene, mistake)).collect(),
         /// The points that the submission gets for the scene; null if the grader failed or did not run it.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = scene.points,

@@ -1,6 +1,6 @@
 //! JUnit XML, with one suite per group and one case per scene. Wrong results are failures, and faults of the grader are
 //! errors.
-use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
+use super::{describe_difference, head_lines, phrases::NOT_GRADED, scene_lines};
 use crate::untrusted_text::{clean_output, strip_control_characters};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
@@ -80,7 +80,7 @@ fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_type(verdict.name());
             status.set_message(strip_control_characters(&words::summarize(scene)));
             let mut description = words::list_details(scene);
-            description.extend(explain::explanation_texts(&scene.corrected_explanations, Style::Plain));
+            description.extend(scene_lines(scene, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), clean_output(&build.output)]);
             }

@@ -38,8 +38,8 @@ pub(crate) use phrases::{
     count_wrong, describe_likely, describe_worth, describe_wrong_state, detail_likely, head_likely,
 };
 pub use phrases::{
-    describe_difference, describe_missing_points, find_likely_mistakes, format_optional_points, format_points,
-    format_score, head_lines,
+    describe_difference, describe_in_scene, describe_missing_points, find_likely_mistakes, format_optional_points,
+    format_points, format_score, head_lines, scene_lines, scene_sentence,
 };
 pub use skipped_entries::{add_warnings, list_not_graded};
 pub(crate) use speed::describe_speed;

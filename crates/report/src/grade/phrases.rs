@@ -1,6 +1,6 @@
 //! Sentences about a grade that appear in several formats.
 use super::clearest_scene;
-use crate::{number::format_count, untrusted_text::to_one_line, words};
+use crate::{explain, number::format_count, style::Style, untrusted_text::to_one_line, words};
 use fosssim_findings::{FindingKind, Grade, SceneGrade, Verdict, disclosure::DisclosedFinding};
 pub use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
@@ -55,6 +55,31 @@ pub(crate) fn describe_wrong_state(scene: &SceneGrade) -> Option<String> {
          response.",
         first.kind()
     ))
+}
+
+/// Describes an explanation of a scene in one sentence: by the wrong state that comes first, if nothing else explains
+/// the polynomials.
+pub fn describe_in_scene(scene: &SceneGrade, mistake: &Explanation) -> String {
+    let state = mistake.is_unexplained().then(|| describe_wrong_state(scene)).flatten();
+    state.unwrap_or_else(|| words::explanation::describe(mistake))
+}
+
+/// Returns the sentence about a scene's likeliest mistake, for formats with a single line.
+pub fn scene_sentence(scene: &SceneGrade) -> Option<String> {
+    let first = scene.corrected_explanations.first()?;
+    if first.is_unexplained() {
+        return Some(describe_in_scene(scene, first));
+    }
+    explain::render_sentence(&scene.corrected_explanations)
+}
+
+/// Returns the lines of a report about a scene's likely mistakes, as [`explain::explanation_texts`] does.
+pub fn scene_lines(scene: &SceneGrade, style: Style) -> Vec<String> {
+    let lines = |mistake: &Explanation| match mistake.is_unexplained().then(|| describe_wrong_state(scene)).flatten() {
+        Some(state) => vec![state],
+        None => explain::explanation_texts(std::slice::from_ref(mistake), style),
+    };
+    scene.corrected_explanations.iter().flat_map(lines).collect()
 }
 
 /// Returns lines about the exact form of a likely mistake, or about the state that is wrong first.

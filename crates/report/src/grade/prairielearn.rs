@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score from 0 to 1. If the grader failed, or the upload has no program that can be
 //! run, `gradable` is false, and the upload does not count as an attempt.
-use super::{super::explain, describe_difference, describe_repeated_reason, describe_speed, format_score, head_lines};
+use super::{describe_difference, describe_repeated_reason, describe_speed, format_score, head_lines, scene_lines};
 use crate::untrusted_text::{clean_output, strip_control_characters, to_one_line};
 use crate::{style::Style, view::to_document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
@@ -130,7 +130,7 @@ pub(crate) fn render(grade: &Grade) -> String {
 fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::list_details(scene));
-    lines.extend(explain::explanation_texts(&scene.corrected_explanations, Style::Plain));
+    lines.extend(scene_lines(scene, Style::Plain));
     lines.join("\n")
 }
 

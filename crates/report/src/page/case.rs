@@ -243,13 +243,11 @@ fn format_value(value: Value) -> String {
 }
 
 /// Renders explanations, each in its own box. If the first wrong values are shown next to them, an explanation's
-/// example is left out. If a wrong state is described, its text replaces the one about polynomials that nothing
-/// explains.
+/// example is left out. If a wrong state is described, its text replaces all about polynomials that nothing explains.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool, wrong_state: Option<&str>) -> String {
-    let parts = explanations.iter().map(|one| {
-        let parts = ExplanationParts::new(one, Style::ColorAndSigns);
-        let sentence = wrong_state.filter(|_| one.is_unexplained()).map_or(parts.sentence, str::to_owned);
-        ExplanationParts { sentence, ..parts }
+    let parts = explanations.iter().map(|one| match wrong_state.filter(|_| one.is_unexplained()) {
+        Some(state) => ExplanationParts { sentence: state.to_owned(), ..ExplanationParts::default() },
+        None => ExplanationParts::new(one, Style::ColorAndSigns),
     });
     render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }

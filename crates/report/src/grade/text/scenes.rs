@@ -3,9 +3,9 @@
 use super::{super::phrases::list_first, Text, TextDetail, quote_output, verdict_style};
 use crate::untrusted_text::to_one_line;
 use crate::{
-    explain,
     grade::{
-        AlikeScenes, describe_difference, format_optional_points, format_points, group_by_cause, text::MAX_SHOWN_LINES,
+        AlikeScenes, describe_difference, format_optional_points, format_points, group_by_cause, scene_lines,
+        scene_sentence, text::MAX_SHOWN_LINES,
     },
     number::format_count,
     style::TextStyle,
@@ -120,11 +120,10 @@ impl<'a> Scenes<'a, '_> {
         lines.extend(describe_difference(scene));
         if self.is_described(scene) {
             let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
-            let likely = explain::explanation_texts(&scene.corrected_explanations, self.options.style);
+            let likely = scene_lines(scene, self.options.style);
             lines.extend(details.iter().chain(&likely).map(|line| to_one_line(line)));
         } else {
-            lines
-                .extend(explain::render_sentence(&scene.corrected_explanations).map(|sentence| to_one_line(&sentence)));
+            lines.extend(scene_sentence(scene).map(|sentence| to_one_line(&sentence)));
         }
         if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene
