@@ -162,6 +162,23 @@ fn every_command_has_help_with_an_example() {
 }
 
 #[test]
+fn a_shell_completes_names() {
+    let workspace = Workspace::new();
+    for (words, expected) in [
+        (&["grade", "--suite", "t2m"][..], "t2m2"),
+        (&["grade", "--scene", "HolisticTests/rope"], "HolisticTests/rope-bridge"),
+        (&["grade", "--format", "ht"], "html"),
+        (&["demo", "--mistake", "pe-square-no-e"], "pe-square-no-eh"),
+        (&["check", "asset:HolisticTests/rope"], "asset:HolisticTests/rope-bridge"),
+    ] {
+        let mut command = workspace.command();
+        command.env("FOSSSIM_COMPLETE", "bash").env("_CLAP_COMPLETE_INDEX", words.len().to_string());
+        let run = finish(command.env("_CLAP_IFS", "\n").args(["--", "fosssim-oracle"]).args(words));
+        assert!(run.out().lines().any(|line| line == expected), "{words:?}: {}", run.shown());
+    }
+}
+
+#[test]
 fn wrong_usage_is_told_apart_from_a_wrong_trace() {
     let workspace = Workspace::new();
     for arguments in

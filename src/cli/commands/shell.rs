@@ -4,6 +4,7 @@ use crate::{
         arguments::{Arguments, CompletionsArguments, ManArguments},
         console,
     },
+    report::formats::Format,
     student::all_rows,
     suite::{library, plan},
 };
@@ -57,13 +58,22 @@ pub(in crate::cli) fn complete_if_requested() {
         .complete();
 }
 
-/// Returns the command line, with completions for the names of suites, scenes, traces and mistakes.
+/// Returns the command line, with completions for the names of suites, scenes, traces, mistakes and formats.
 fn add_completions(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             let names = plan::built_in_names().filter_map(|name| name.strip_suffix("@1").map(str::to_owned));
             complete_names(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
         })),
+        // A filter of scenes has their bare names.
+        "scene" if !argument.is_positional() => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            complete_names(typed, library::all_names().map(|name| name.to_string()))
+        })),
+        "format" if argument.get_possible_values().is_empty() => {
+            argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+                complete_names(typed, Format::ALL.iter().map(|format| format.name().to_owned()))
+            }))
+        }
         "scene" | "trace" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             let names = library::all_names().map(|name| format!("asset:{name}"));
             complete_names(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
