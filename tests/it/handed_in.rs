@@ -105,6 +105,9 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     let right = grade("right", &[]);
     assert_eq!(right.code, Some(0), "{}", right.shown());
     assert!(right.out().contains("right: accepted, 20 of 20 points"), "{}", right.out());
+    std::fs::create_dir(workspace.path("none")).expect("a folder");
+    let none = grade("none", &[]).out();
+    assert!(none.contains("Group/name.bin is missing or empty") && !none.contains("the program"), "{none}");
     let wrong = grade("wrong", &["--format", "csv", "--format", "html=wrong.html"]);
     assert_eq!(wrong.code, Some(1), "{}", wrong.shown());
     assert!(wrong.out().contains(",WA,") && wrong.out().contains(",pe-square-no-eh"), "{}", wrong.out());

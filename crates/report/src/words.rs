@@ -31,6 +31,10 @@ pub fn summarize(result: &SceneResult) -> String {
         Reason::Right => step_share::describe_right(result.steps, spell_number),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
+        // Traces that were handed in have no program that ended.
+        Reason::NoTrace if result.ended.is_none() => {
+            "there is no trace of this scene: the file Group/name.bin is missing or empty".to_owned()
+        }
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
         Reason::Program(reached) => describe_ending(result) + &describe_progress(*reached, result.steps),
         Reason::Skipped(why) => describe_left_out(*why),
