@@ -25,7 +25,7 @@ use crate::{
     files::{FilePlace, Folder},
     judge::Rules,
     report::{
-        explain, grade,
+        grade,
         number::format_count,
         page::Audience,
         style::Style,
@@ -403,7 +403,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         let details = grade::describe_difference(scene).into_iter().chain(words::list_details(scene));
         text.extend(
             details
-                .chain(explain::explanation_texts(&scene.corrected_explanations, Style::Plain))
+                .chain(grade::scene_lines(scene, Style::Plain))
                 .map(|line| format!("{}\n", strip_control_characters(&line))),
         );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {

@@ -169,9 +169,8 @@ impl<'a> Search<'a> {
         }
         if found.len() == before {
             bail!(
-                "{} contains no submission: no program, no archive ({}), no folder, and no {}; with --single the \
-                    folder \
-                 itself is one",
+                "{} contains no submission: no program, no archive ({}), no folder, and no {}; build sources first, \
+                 or take the folder itself as a submission with --single",
                 folder.display(),
                 fosssim_intake::KNOWN_EXTENSIONS,
                 self.arguments.program
