@@ -92,7 +92,7 @@ const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "
 // The embedded scenes, as options of the list.
 const inside = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
-  $("suite").append(...value.suites.map((name) => el("option", { value: name }, name)));
+  $("suite").append(...value.suites.map(({ name, title }) => el("option", { value: name }, title)));
   if (course) {
     $("suite").prepend(el("option", { value: "" }, course.name));
     $("suite").value = "";

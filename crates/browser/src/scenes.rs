@@ -31,6 +31,12 @@ pub(crate) fn list() -> Value {
     Assignment::list_default_first().into_iter().map(of).collect()
 }
 
+/// Returns the name of an embedded suite, such as `t2m2@2`, and its title.
+pub(crate) fn describe_suite(name: &str) -> Value {
+    let assignment = Assignment::from_key(name.split('@').next().unwrap_or_default()).unwrap_or(Assignment::DEFAULT);
+    json!({ "name": name, "title": format!("{} ({name})", assignment.definition().title) })
+}
+
 /// Returns the XML of a scene. The name is `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| {

@@ -76,7 +76,7 @@ impl PageSession {
         let last = || "no scene has been simulated".to_owned();
         match request {
             PageRequest::Scenes => {
-                let suites: Vec<String> = plan::built_in_names().collect();
+                let suites: Vec<_> = plan::built_in_names().map(|name| scenes::describe_suite(&name)).collect();
                 Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
             }
             PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
