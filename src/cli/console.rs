@@ -80,7 +80,7 @@ pub(super) fn width() -> Option<usize> {
     }
 }
 
-/// Prints a report for people. On a terminal, long lines are broken between words.
+/// Prints a report as text. On a terminal, long lines are broken between words.
 ///
 /// # Errors
 ///

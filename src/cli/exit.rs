@@ -6,5 +6,5 @@ pub const ACCEPTED: u8 = 0;
 pub const NOT_ACCEPTED: u8 = 1;
 /// Wrong usage, an unusable input, or an error of this program. This is never a verdict on a submission.
 pub const FAULT: u8 = 2;
-/// The program was ended by SIGINT or SIGTERM. No output is incomplete.
+/// The program was interrupted by SIGINT or SIGTERM. No output is incomplete.
 pub const INTERRUPTED: u8 = 130;

@@ -44,8 +44,8 @@ pub enum RunEnd {
 }
 
 impl RunEnd {
-    /// Returns a name for the way in which the run ended, for programs and for the attack suite. Examples are `exited`,
-    /// `cpu` and `violation`.
+    /// Returns a name for the way in which the run ended, which never changes. Examples are `exited`, `cpu` and
+    /// `violation`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Exited(_) => "exited",

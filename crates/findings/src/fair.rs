@@ -110,7 +110,8 @@ pub struct Judgement {
     pub factor: Option<[f64; 2]>,
     /// The form of the approach polynomial that the trace uses.
     pub form: Form,
-    /// The number of polynomials in which small coefficients are present on one side and dropped on the other.
+    /// The number of calls with right polynomials in which small coefficients are present on one side and dropped on
+    /// the other.
     pub lost_decisions: u64,
     /// The shares of the tolerances that accepted values use.
     pub shares: Shares,

@@ -51,8 +51,8 @@ fosssim_num::closed_set! {
 }
 
 impl FindingKind {
-    /// Returns the original's message for findings of this kind. `None` for positions and velocities, which only
-    /// increase residuals, and for kinds that the original does not check.
+    /// Returns the original's message for findings of this kind. Returns `None` for positions and velocities, which
+    /// only increase residuals, and for kinds that the original does not check.
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
             Self::MissedCollision => Some("Missed collision"),

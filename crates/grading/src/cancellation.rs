@@ -6,7 +6,7 @@ use std::sync::{
 };
 
 /// A switch that stops a grading from outside, for example when the user presses Ctrl-C. No new run begins then, and
-/// all active runs are ended.
+/// all active runs are killed.
 #[derive(Debug, Default)]
 pub struct Cancellation {
     cancelled: AtomicBool,
@@ -28,7 +28,7 @@ impl Cancellation {
         self.cancelled.load(Ordering::SeqCst)
     }
 
-    /// Registers a run, until the returned value is dropped. If the grading has already been stopped, the run is ended
+    /// Registers a run, until the returned value is dropped. If the grading has already been stopped, the run is killed
     /// immediately.
     pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
         let number = self.next_number.fetch_add(1, Ordering::Relaxed);

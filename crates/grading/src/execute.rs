@@ -233,7 +233,7 @@ impl Runner<'_> {
             failed_scene::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // The judge has already reported an error of reading here.
+        // The judge has already reported read errors.
         let _ = io::copy(&mut kept.keep_from(trace), &mut io::sink());
         judged
     }

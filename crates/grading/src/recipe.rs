@@ -25,7 +25,7 @@ use std::{
     path::Path,
 };
 
-/// The settings by which submissions become programs.
+/// The settings with which a submission is turned into a program: copied, unpacked or built.
 #[derive(Clone, Copy)]
 pub struct Recipe<'a> {
     /// The name of the program in folders and archives.

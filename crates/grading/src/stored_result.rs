@@ -13,14 +13,14 @@ pub struct StoredResult {
     form: u32,
     /// The key under which the result is found.
     pub key: ResultKey,
-    /// The name of the submission. It is only for people who read the file.
+    /// The name of the submission. It only informs readers of the file.
     pub submission: String,
     /// The result.
     pub result: SceneResult,
 }
 
-/// Returns the line that stores a result under its key, with a line feed at its end. The submission's name is only for
-/// people who read the file.
+/// Returns the line that stores a result under its key, with a line feed at its end. The submission's name only informs
+/// readers of the file.
 pub fn format_line(key: &ResultKey, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
     let mut line =

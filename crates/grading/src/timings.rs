@@ -9,7 +9,7 @@ use std::{
 /// A part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RunPart {
-    /// The program is started in its sandbox and waited for.
+    /// The grader starts the program in its sandbox, and waits for it.
     Start,
     /// The program runs.
     Program,

@@ -1,16 +1,16 @@
 //! Enums that are closed sets, declared with one row per variant, with a list of all variants and their names.
 
 /// Declares an enum with `ALL`, its variants in order, and, if each row has a name, the function `name`. Rows may have
-/// one more text, whose function is named below them.
+/// a second text. Its function is named below the rows.
 ///
 /// ```
 /// fosssim_num::closed_set! {
 ///     /// A side of a half-plane.
 ///     #[derive(Debug, PartialEq)]
 ///     pub enum Side {
-///         /// Where its normal points.
+///         /// The side to which the normal points.
 ///         Front = "in front",
-///         /// The other one.
+///         /// The opposite side.
 ///         Back = "behind",
 ///     }
 /// }
@@ -31,7 +31,7 @@ macro_rules! closed_set {
         $crate::closed_set! { $(#[$meta])* $vis enum $set { $($(#[$about])* $variant,)+ } }
 
         impl $set {
-            /// Returns the name for people, files and command lines.
+            /// Returns the name that files and command lines use.
             $vis const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)+ }
             }

@@ -181,7 +181,8 @@ impl<S: Simd> Lanes<S> {
     pub fn store_by_lane<const FOURS: usize>(numbers: &[[Self; 4]; FOURS], stride: usize, rows: &mut [f64]) {
         for (four, [a, b, c, d]) in numbers.iter().enumerate() {
             if Self::COUNT == 4 {
-                // For as many vectors as lanes this is a transposition, with four instructions for eight.
+                // If there are as many vectors as lanes, this is a transposition, which takes four instructions for
+                // eight.
                 let turned = a.simd.interleave_shfl_f64s([a.values, b.values, c.values, d.values]);
                 for (lane, values) in turned.into_iter().enumerate() {
                     let begin = lane * stride + 4 * four;

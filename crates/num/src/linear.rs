@@ -48,7 +48,8 @@ pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
     rhs.copy_from_slice(solution);
 }
 
-/// Replaces the matrix by its unit lower and its upper triangle, both permuted; gives the rank.
+/// The decomposition of a matrix, which is replaced by its unit lower and its upper triangle, both permuted. The result
+/// is the rank.
 ///
 /// `row_swaps[k]` is the row that was exchanged with row k; `column_order[k]` the original column that is now in
 /// place k.
@@ -58,7 +59,7 @@ struct Decomposition<'a> {
     n: usize,
     row_swaps: &'a mut Vec<usize>,
     column_order: &'a mut Vec<usize>,
-    /// The largest modulus in the rows that have no pivot yet, NaN ignored.
+    /// The largest modulus in the rows that have no pivot yet. NaN is ignored.
     moduli: &'a mut Vec<f64>,
 }
 
@@ -141,7 +142,7 @@ impl Decomposition<'_> {
     }
 
     /// Subtracts multiples of row k from the rows below, and leaves the multipliers in column k. A column with a zero
-    /// in row k stays as it is, unless an entry is a negative zero: no difference of others is one.
+    /// in row k does not change, unless an entry is a negative zero. No difference of other numbers is a negative zero.
     #[inline(always)]
     fn eliminate<S: Simd>(&mut self, simd: S, k: usize, may_skip: bool) {
         let (n, width) = (self.n, Lanes::<S>::COUNT);
@@ -181,7 +182,7 @@ struct Pivot {
     modulus: f64,
 }
 
-/// Returns the largest modulus of a column's entries, NaN ignored.
+/// Returns the largest modulus of a column's entries. NaN is ignored.
 #[inline(always)]
 fn largest_modulus<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
@@ -199,7 +200,7 @@ fn find_largest_modulus<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
     if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| max_modulus(largest, *entry)) } else { largest }
 }
 
-/// Returns the larger of a modulus and that of an entry, unless this is NaN.
+/// Returns the larger of `modulus` and |entry|. A NaN entry is ignored.
 #[inline(always)]
 fn max_modulus(modulus: f64, entry: f64) -> f64 {
     if entry.abs() > modulus { entry.abs() } else { modulus }

@@ -102,8 +102,8 @@ pub const FAIR_NORM_UNITS: f64 = 16.0;
 /// computed.
 pub const FAIR_CLEAR_SHARE: f64 = 0.25;
 
-/// Fair: the tolerance of a root finder at the time of impact, in units of the polynomials' error bounds there.
-/// Covers deflation and other solvers than the course's.
+/// Fair: the tolerance of a root finder at the time of impact, in units of the polynomials' error bounds there. It
+/// covers deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
 /// Fair: a time of impact may deviate by this fraction of the step, for all polynomials, because even a careful root

@@ -41,10 +41,10 @@ pub(crate) enum Task<'a> {
 
 /// Writes the original's standard output to a stream, event by event.
 ///
-/// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::graded`]. For recording and plain runs,
-/// call `begins`, `observe_step_begin` and [`Transcript::end_step`] per step, then [`Transcript::print_completion`]
-/// and [`Transcript::print_exit_line`]. The first error of the stream is kept until [`Transcript::finish`]; later text
-/// is dropped.
+/// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::print_end`]. For recording and plain
+/// runs, call `observe_begin`, `observe_step_begin` and [`Transcript::end_step`] per step, then
+/// [`Transcript::print_completion`] and [`Transcript::print_exit_line`]. The first error of the stream is kept until
+/// [`Transcript::finish`]; later text is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
     stream: W,
@@ -82,7 +82,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         Self { stream, heading, steps: heading.scene.step_count(), threshold: DOT_INTERVAL, clock: None, error: None }
     }
 
-    /// Notes that all steps are completed.
+    /// Prints that all steps are completed.
     pub(crate) fn print_completion(&mut self) {
         self.print_dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;

@@ -1,4 +1,4 @@
-//! Explanations of mistakes, as lines for people and as JSON for programs.
+//! Explanations of mistakes, as lines of text and as JSON.
 //!
 //! The functions show everything in an explanation. Parts that the reader may not see are removed before, by
 //! `mistakes::together::told`. Data of a submission appear only as numbers.

@@ -47,7 +47,7 @@ macro_rules! formats {
 }
 
 formats! {
-    /// Text for people at a terminal.
+    /// Text for the terminal.
     Text "text" true
         |grades, passed_over| {
             Text::default().render(grades) + &list_not_graded(grades, class_entries(grades, passed_over), Style::Plain)

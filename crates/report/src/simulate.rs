@@ -29,7 +29,7 @@ pub struct SimulationSummary<'a> {
 }
 
 impl SimulationSummary<'_> {
-    /// Renders the report for people.
+    /// Renders the report as text.
     pub fn text(&self, style: Style) -> String {
         let counts = &self.counts;
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
@@ -74,7 +74,7 @@ impl SimulationSummary<'_> {
         format!("{}\n{}", style.paint(TextStyle::Strong, &heading), table.render(style))
     }
 
-    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report as one JSON object, indented, with a line feed at its end.
     pub fn json(&self) -> String {
         let counts = &self.counts;
         let calls: serde_json::Map<_, _> = counts

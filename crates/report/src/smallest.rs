@@ -19,7 +19,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
     format!("The smallest scene: {bodies} {noun}, {steps} (made from {origin} in {runs}{end})")
 }
 
-/// Renders the report for people.
+/// Renders the report as text.
 pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));

@@ -62,8 +62,8 @@ pub fn quote(word: &str) -> String {
     }
 }
 
-/// Returns whether a character cannot be seen. It either changes the direction of text, which could reorder a report,
-/// or it has no width, which could make two names look alike.
+/// Returns whether a character is invisible: a direction mark, which could reorder a report, or a character without
+/// width, which could make two names look alike.
 pub(crate) const fn is_invisible(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')

@@ -73,7 +73,7 @@ fn find_continuation(line: &str, body: &str, width: usize) -> (usize, &'static s
     if body.starts_with("- ") {
         return (lead + 2, "");
     }
-    // The rest of a broken row in a table is below the row's last column, if there is space.
+    // A wrapped table row continues below its last column, if there is space.
     let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
     let columns_at = gaps.filter_map(|at| {
         let rest = line[at..].trim_start_matches(' ');

@@ -68,7 +68,8 @@ impl Default for Limits {
 pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
-    /// Returns the identity of the regular file at the path. Links are followed. `None` if there is no such file.
+    /// Returns the identity of the regular file at the path. Links are followed. Returns `None` if there is no such
+    /// file.
     pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
         let (device, inode) = (metadata.dev().cast_signed(), metadata.ino().cast_signed());

@@ -58,7 +58,7 @@ impl RunKind {
     }
 }
 
-/// A keeper process. When the value is dropped, the process is ended and waited for.
+/// A keeper process. When the value is dropped, the process is stopped, and its end is awaited.
 #[derive(Debug)]
 pub(super) struct Keeper {
     kind: RunKind,
@@ -107,7 +107,7 @@ pub(super) struct KeeperPool {
 }
 
 impl KeeperPool {
-    /// Takes an idle keeper for runs of this kind. If there is none, an idle keeper of another kind is ended to make
+    /// Takes an idle keeper for runs of this kind. If there is none, an idle keeper of another kind is stopped to make
     /// room.
     pub(super) fn take_keeper(&self, kind: &RunKind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);

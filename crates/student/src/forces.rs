@@ -10,7 +10,7 @@ use super::{
     world::{World, add, subtract},
 };
 
-/// Returns the gradient of all forces at positions `x` and velocities `v`, in acting order.
+/// Returns the gradient of all forces at positions `x` and velocities `v`, in the order of the scene.
 pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
     for force in &world.scene.forces {

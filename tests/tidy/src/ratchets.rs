@@ -248,7 +248,7 @@ fn every_snapshot_is_compared() {
     let scenes = files(&root().join("assets"), ".xml");
     let is_scene = |short: &str| scenes.iter().any(|scene| scene.ends_with(short.replace("--", "/") + ".xml"));
     let is_used = |snapshot: &PathBuf| {
-        // `crate__module__tests__name@input.snap`
+        // `crate__module__tests__name@input.snap_weights`
         let stem = snapshot.file_stem().expect("a name").to_str().expect("a name");
         let short = stem.split('@').next().and_then(|stem| stem.rsplit("__").next()).expect("a name");
         let numbered = short.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('-');

@@ -32,8 +32,8 @@ use std::collections::BTreeMap;
 /// An explanation of what is wrong with a program: a likely mistake or an observation, with the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
-    /// The name of the explanation for programs. It is the id of a known mistake (such as `pe-square-no-eh`), or the
-    /// name of a general finding (such as `reversed`).
+    /// The name of the explanation, which never changes. It is the id of a known mistake (such as `pe-square-no-eh`),
+    /// or the name of a general finding (such as `reversed`).
     pub key: String,
     /// The subject of the explanation, with the facts that a sentence can state without revealing a formula.
     #[serde(rename = "about")]

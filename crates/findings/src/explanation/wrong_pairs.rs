@@ -20,8 +20,8 @@ pub struct PairCounts {
     /// The number of pairs that are reported zero times, once, and twice.
     #[serde(rename = "times")]
     pub counts_by_times: [u64; 3],
-    /// For each trait, the number of pairs that have it, in the order of the table of traits. Each is split as in
-    /// `times`.
+    /// For each trait, the number of pairs that have it, in the order of the table of traits. Each number is split as
+    /// in `counts_by_times`.
     pub traits: Vec<[u64; 3]>,
 }
 

@@ -16,7 +16,7 @@ pub trait Results: Sync {
     fn find(&self, key: &ResultKey) -> Option<SceneResult>;
 
     /// Stores a result. If the storage is persistent, the result is written before this function returns. The
-    /// submission's name is only for people who read the file.
+    /// submission's name only informs readers of the file.
     ///
     /// # Errors
     ///

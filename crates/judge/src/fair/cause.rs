@@ -66,7 +66,7 @@ fn explain_laxness(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
             Cause::MidRecord
         }
-        // The original judged all steps, so only the trace's own polynomials have no result.
+        // The original judged all steps, so only the root search of the trace's own polynomials has no result.
         FindingDetail::NoResult { .. } => Cause::OwnPolynomials,
         FindingDetail::ContactTime { .. } => Cause::ContactTime,
         FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,

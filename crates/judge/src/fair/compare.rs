@@ -11,7 +11,7 @@ fosssim_model::drops_leading!();
 /// The result of comparing a right polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
-    /// The positive factor of the logged polynomial, or `None` if there is only round-off.
+    /// The positive factor of the logged polynomial, or `None` if its coefficients are only round-off.
     pub scale: Option<f64>,
     /// The largest share of its tolerance that a coefficient uses, from 0 to 1. For a polynomial that is accepted
     /// early, this is an upper bound of at most a quarter.
@@ -74,7 +74,7 @@ const MIN_SAFE_SUM: f64 = 1e-100;
 pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
-    /// The value that stands for polynomials that are not compared.
+    /// The placeholder for polynomials that are not compared.
     pub const NOT_COMPARED: Self = Self { sum: 0.0, logged_sum: 0.0, scale: 0.0, worst_deviation: 0.0 };
 
     /// Compares the expected coefficients `own` with `logged`, which has the same length.
@@ -135,7 +135,7 @@ impl Similarity {
     }
 }
 
-/// Compares like [`compare`] if no bounds of the coefficients are needed; `None` if the comparison needs them.
+/// Compares like [`compare`], but without bounds of the coefficients. Returns `None` if the comparison needs them.
 fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < MIN_LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
@@ -157,8 +157,9 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
 /// deviates by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
-/// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
-/// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
+/// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it. If values are compared instead, their
+/// tolerances are smaller. Each time therefore allows an interval of factors, and if two of these are disjoint there is
+/// no factor.
 pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// The maximum deviation: all tolerances, and the rounding errors of this computation.
     const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
@@ -188,8 +189,9 @@ pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> 
     least > most + 1e-9 * most.abs()
 }
 
-/// Compares like [`compare`] if the logged polynomial is complete and right with the best factor, as nearly all are;
-/// otherwise `None`. The factor is found once, and one loop compares all coefficients by the same operations.
+/// Compares like [`compare`], but only with the best factor. The factor is found once, and one loop compares all
+/// coefficients by the same operations. Returns `None` unless the logged polynomial is complete and right, as nearly
+/// all are.
 fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
@@ -311,8 +313,8 @@ fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
-/// Returns the best factor, each coefficient weighted by its precision; `None` if all are round-off. If the factor is
-/// not positive or not finite, the polynomial is wrong.
+/// Returns the best factor. Each coefficient is weighted by its precision. The result is `None` if all coefficients are
+/// round-off. If the factor is not positive or not finite, the polynomial is wrong.
 fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = bound_sum(right);
     let (mut products, mut squares) = (0.0, 0.0);
@@ -358,7 +360,7 @@ fn bound_sum(right: &[BoundedValue]) -> f64 {
 
 /// Returns the factors with which a logged polynomial would be right, although it does not show its own factor. These
 /// factors are large enough for its coefficients to be round-off, and small enough for the course's library to drop the
-/// missing ones. `None` if the polynomial shows its factor, or if there is no such factor.
+/// missing ones. Returns `None` if the polynomial shows its factor, or if there is no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -388,9 +390,9 @@ pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// Returns the factors that a right polynomial claims and does not show. Such a polynomial has only one coefficient of
-/// significant size, and lacks others that the course's library would keep with the factor 1. `None` if the polynomial
-/// shows its factor, or lacks nothing.
+/// Returns the factors that a right polynomial claims, but does not show. Such a polynomial has only one coefficient of
+/// significant size, and lacks others that the course's library would keep with the factor 1. Returns `None` if the
+/// polynomial shows its factor, or lacks nothing.
 pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -402,15 +404,15 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
-/// Returns the least factor, more than 1, with which a polynomial would be right that should be zero except for
-/// round-off. `None` if it is round-off without a factor, or should be more, or has the size 1 to which some programs
-/// divide polynomials.
+/// Returns the smallest factor above 1 with which a polynomial would be right, if the expected polynomial is zero
+/// except for round-off. Returns `None` if the polynomial needs no factor, if the expected polynomial is larger, or if
+/// the polynomial has the size 1 to which some programs scale polynomials.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
     let norm = bound_sum(expected);
     if !(norm > 0.0 && norm.is_finite() && is_round_off(expected)) {
         return None;
     }
-    // As much as counts as round-off of the expected polynomial, and the rounding errors of both sides.
+    // The size that counts as round-off of the expected polynomial, plus the rounding errors of both sides.
     let least = actual.iter().map(|s| s.abs()).sum::<f64>() / (DOUBLE_TOLERANCE * norm);
     let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let squares = actual.iter().map(|s| s * s).sum::<f64>();

@@ -36,8 +36,8 @@ fn evaluate(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Returns the value like [`evaluate`], but accepts that leading coefficients are missing that the course's library
-/// drops with a factor near 1.
+/// Returns the value like [`evaluate`], but allows for leading coefficients that the course's library drops with a
+/// factor near 1.
 fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT).sum();
@@ -140,8 +140,8 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.vector_to_nearest_point(t) - value))
 }
 
-/// Returns the tolerance of contact normals that are computed directly from positions; its rounding errors have the
-/// size of the largest position.
+/// Returns the tolerance of contact normals that are computed directly from positions. Their rounding errors are those
+/// of the largest position.
 fn simple_tolerance(before: &State) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * largest_size(&before.positions)
 }
@@ -204,8 +204,8 @@ impl<'a> Tolerances<'a> {
     }
 }
 
-/// Compares a logged state with the reference's. A wrong velocity does not count if the position is wrong, because both
-/// have the same cause.
+/// Compares a logged state with the reference's. A wrong velocity is not reported if the position is wrong, because
+/// both have the same cause.
 pub(super) fn compare_states(
     judged: &mut StepJudgement,
     frame: u64,
@@ -302,7 +302,7 @@ const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may change the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
-    // An edge at rest leaves a parabola, and the submission's own polynomials are as exact.
+    // With an edge at rest, the polynomials are parabolas, and the submission's own are equally exact.
     let is_certain = || {
         let is_exact = motion.has_edge() && motion.is_exact(EXACT_BITS);
         is_exact && decide(&expected.polynomials()[..expected.count()], 0.0).certainty != HitCertainty::Borderline

@@ -88,7 +88,7 @@ pub(crate) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A decision that the step was continued with.
+/// A decision with which the step was continued.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FollowedDecision {
     pub pair: Pair,

@@ -273,13 +273,13 @@ fn with_component_errors(v: Vec2, size: f64) -> BoundedVector {
     BoundedVector { x: component(v.x), y: component(v.y) }
 }
 
-/// Returns a vector of the scene in axes of any direction.
+/// Returns a vector of the scene whose components have the rounding errors of rotated axes.
 fn rotate_axes(v: Vec2) -> BoundedVector {
     with_component_errors(v, extent(v))
 }
 
-/// Returns the size of a vector's rounding errors in axes of any direction. It is between the vector's length and √2
-/// times the length.
+/// Returns |x| + |y|, which bounds the components of a vector in rotated axes. It is at most √2 times the vector's
+/// length.
 pub(super) fn extent(v: Vec2) -> f64 {
     v.x.abs() + v.y.abs()
 }

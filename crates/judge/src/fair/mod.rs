@@ -9,14 +9,14 @@
 //!    of its polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead
 //!    the root finder to a decision that differs from the reference's, both decisions are accepted.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
-//!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
-//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace shows. NaN
-//!    fails.
+//!    bound. A small leading coefficient may be missing, because the course's library drops it. The factor must make it
+//!    small: either two coefficients show this factor, or it is usual in the trace, which is known only at the trace's
+//!    end. NaN fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by
 //!    [`FAIR_SENSITIVITY_FACTOR`] times the effect of such roundings of the step's input on its result.
-//! 4. A decision that such roundings can change is borderline: it is followed and noted, never counted as wrong.
-//!    However, the place and the time of a collision must be right. Coefficients that were lost because of a factor do
-//!    not count as round-off: decisions and times of impact are compared with those of the whole polynomials.
+//! 4. A decision that such roundings can change is borderline: it is followed and counted as borderline, never as
+//!    wrong. However, the place and the time of a collision must be right. Coefficients that were lost because of a
+//!    factor do not count as round-off: decisions and times of impact are compared with those of the whole polynomials.
 //!    Coefficients that a factor keeps, although the course's library drops them from the reference's polynomials, are
 //!    followed.
 //! 5. It checks everything: the first record, mid records, times of impact, repeated contacts, and bytes after the last

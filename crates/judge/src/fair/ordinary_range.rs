@@ -57,7 +57,7 @@ fn positions(state: &State) -> impl Iterator<Item = Vec2> {
     (0..state.positions.len() / 2).map(|particle| vector_at(&state.positions, particle))
 }
 
-/// Returns the size of the largest vector, for axes of any direction.
+/// Returns the largest [`extent`] of a vector.
 pub(super) fn largest_size(vectors: &[f64]) -> f64 {
     let all = (0..vectors.len() / 2).map(|index| extent(vector_at(vectors, index)));
     all.fold(0.0, f64::max)

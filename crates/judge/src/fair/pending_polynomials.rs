@@ -47,7 +47,7 @@ impl PendingPolynomials {
         (!(most.0 >= low * (1.0 - room))).then_some(most.1)
     }
 
-    /// Returns whether the polynomials count in a trace of form `form`.
+    /// Returns whether the polynomials are judged in a trace of this form.
     pub fn counts_for_form(&self, form: Form) -> bool {
         self.form == Form::Either || self.form == form
     }

@@ -150,7 +150,7 @@ impl PerturbedRun<'_> {
     }
 }
 
-/// An observer that follows the known decisions, and notes the decisions of the perturbed run.
+/// An observer that follows the known decisions, and records the decisions of the perturbed run.
 struct PerturbedRun<'a> {
     records: &'a Records<'a>,
     decisions: &'a [FollowedDecision],

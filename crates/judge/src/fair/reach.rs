@@ -37,7 +37,7 @@ struct ReferenceRun {
 }
 
 impl<'a> Reach<'a> {
-    /// Creates the reach of a scene.
+    /// Creates the comparison for traces of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, range: OrdinaryRange::for_scene(scene), run: None, second_simulation: None }
     }

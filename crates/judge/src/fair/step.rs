@@ -91,8 +91,8 @@ fn follow(
     Ok(second)
 }
 
-/// Counts differences between the two records of a step that must agree (trace-format.md 2), and logs that the course's
-/// library cannot have written.
+/// Counts differences between the two records of a step that must agree (trace-format.md 2), and lists that the
+/// course's library cannot have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.add_finding(Finding { step, frame, detail });

@@ -12,7 +12,7 @@ pub(super) struct ContestOrder {
 }
 
 impl ContestOrder {
-    /// Creates the state before the first step.
+    /// Creates the order before the first step.
     pub(super) fn new(scene: &Scene) -> Self {
         Self { simulation: Simulation::new(scene, RootSearch::OnDemand), order: SweepOrder::default() }
     }

@@ -94,7 +94,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         Some(text)
     }
 
-    /// Returns the text of an optional attribute; the outer `None` means unreadable.
+    /// Returns the text of an optional attribute. The outer `None` means that the attribute cannot be read.
     pub(super) fn optional_text(&mut self, name: &str) -> Option<Option<String>> {
         if self.has_attribute(name) { self.text(name, "").map(Some) } else { Some(None) }
     }

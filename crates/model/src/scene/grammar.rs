@@ -24,7 +24,7 @@ static ELEMENT_RULES: [Rule; 19] = [
     new_rule("edgecolor", &["i", "r", "g", "b"]),
     new_rule("halfplanecolor", &["i", "r", "g", "b"]),
     new_rule("particlepath", &["i", "duration", "r", "g", "b"]),
-    // Known only so that the rigid-body stub's elements are rejected with a specific message.
+    // These elements are known only so that the rigid-body stub is rejected with a specific message.
     new_rule("rigidbody", &["p", "r"]),
     new_rule("rigidbodyvertex", &["x", "y", "m"]),
 ];

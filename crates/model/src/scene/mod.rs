@@ -1,10 +1,11 @@
 //! The validated scene and its XML: model, reader, writer, and the original's lenient reader.
 //!
-//! Does not use the simulator or the file system; takes and returns text. The grammar is that of `scene-format.md`.
+//! This module does not use the simulator or the file system. It takes and returns text. The grammar is that of
+//! `scene-format.md`.
 //!
-//! [`read`] is for people: it reports all problems, with places and advice, and rejects scenes that the original would
-//! silently misread. [`original::read`] is for compatibility: it accepts exactly what the original accepts and rejects
-//! the rest in the original's words.
+//! [`read`] is for authors of scenes: it reports all problems, with places and advice, and rejects scenes that the
+//! original would silently misread. [`original::read`] is for compatibility: it accepts exactly what the original
+//! accepts and rejects the rest in the original's words.
 
 mod checks;
 mod document;

@@ -9,8 +9,8 @@ use std::fmt;
 /// Writes a scene as XML, one element per line, with every attribute, and every number in the shortest form that reads
 /// back to the same bits.
 ///
-/// Reading gives an equal scene if its forces are in acting order and it is valid. A NaN or an infinity has no form in
-/// XML, and a NUL in a text is written as U+FFFD.
+/// Reading gives an equal scene if the scene is valid and its forces are in the order in which they act. A NaN or an
+/// infinity has no form in XML, and a NUL in a text is written as U+FFFD.
 pub fn write(scene: &Scene) -> String {
     let display = &scene.display;
     let mut all = Vec::new();
@@ -65,7 +65,7 @@ fn build_integrator(scene: &Scene) -> Element {
     Element::new("integrator").with_attribute("type", scene.integrator.name()).number("dt", scene.time_step)
 }
 
-/// Returns the element of a collision handling, or `None` without one.
+/// Returns the element of a collision handling, or `None` if there is none.
 fn build_collision(collision: Collision) -> Option<Element> {
     let element = Element::new("collision").with_attribute("type", collision.kind().name());
     Some(match collision {
@@ -88,7 +88,7 @@ pub fn integrator_element(scene: &Scene) -> String {
     build_integrator(scene).to_string()
 }
 
-/// Returns the element of a scene's collision handling; empty without one.
+/// Returns the element of a scene's collision handling, or an empty text if there is none.
 pub fn collision_element(handling: Collision) -> String {
     build_collision(handling).map_or_else(String::new, |element| element.to_string())
 }

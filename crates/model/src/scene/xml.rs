@@ -25,7 +25,7 @@ pub(super) struct SceneParts<'d, 't> {
     pub(super) display: Option<Display>,
 }
 
-/// A tag and its values, unless it had problems.
+/// A tag and its parsed value. The value is `None` if the tag is invalid.
 pub(super) struct ParsedElement<'d, 't, T> {
     pub(super) tag: &'d Tag<'t>,
     pub(super) value: Option<T>,
@@ -111,7 +111,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         tags.map(read).collect()
     }
 
-    /// Returns the first element of a kind of which only one counts.
+    /// Returns the first element of a kind of which only one is used.
     fn read_first<T>(
         &mut self,
         name: &str,
@@ -165,7 +165,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         }
     }
 
-    /// Returns whether the scene belongs to the unfinished rigid-body stub; also reports wrong types.
+    /// Returns whether the scene belongs to the unfinished rigid-body stub. Also reports wrong types.
     fn has_rigid_bodies(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";

@@ -12,21 +12,21 @@ use fosssim_num::vector::Vec2;
 /// Masses, radii, flags, edges and half-planes.
 #[derive(Debug, Clone)]
 pub(super) struct Bodies {
-    /// The mass per particle, as written.
+    /// The mass of each particle, as written.
     pub masses: Vec<f64>,
-    /// The mass per particle for responses: infinite for a fixed particle (collisions.md 3).
+    /// The mass of each particle for responses. A fixed particle has an infinite mass (collisions.md 3).
     pub response_masses: Vec<f64>,
-    /// The radius per particle.
+    /// The radius of each particle.
     pub radii: Vec<f64>,
     /// Whether a particle is fixed.
     pub fixed: Vec<bool>,
-    /// The first and second endpoint per edge.
+    /// The first and the second endpoint of each edge.
     pub edges: Vec<[usize; 2]>,
-    /// The radius per edge.
+    /// The radius of each edge.
     pub edge_radii: Vec<f64>,
-    /// A boundary point per half-plane.
+    /// A boundary point of each half-plane.
     pub points: Vec<Vec2>,
-    /// The normal as written, per half-plane.
+    /// The normal of each half-plane, as written.
     pub normals: Vec<Vec2>,
 }
 
@@ -67,7 +67,7 @@ impl Bodies {
         ObjectCounts { particles: self.particle_count(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
-    /// Returns the particles of a pair; a pair with fewer than three repeats the last one.
+    /// Returns the particles of a pair. If there are fewer than three, the last one is repeated.
     pub fn pair_particles(&self, pair: Pair) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {

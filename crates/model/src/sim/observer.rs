@@ -6,12 +6,13 @@ use serde::{Deserialize, Serialize};
 
 /// Receives the events inside a step. Every method does nothing by default.
 ///
-/// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
-/// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
-/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronization` (continuous-time:
-/// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
-/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge.
-/// `end_step` is last.
+/// The order within one step is as follows. `begin_step` comes first. For collision types with a handler, each
+/// detection pass then calls `begin_pass`, `observe_positions`, `observe_detection` for each pair, and `end_pass`. In
+/// `simple` and `continuous-time`, `observe_impulse` directly follows the detection that caused the impulse; in
+/// `hybrid`, the impulses of a pass follow its `end_pass`. `observe_synchronization` comes at the end of the handler in
+/// `continuous-time`, and after the impulses in `hybrid`. The geometric part begins with a detection pass. Each round
+/// then calls `observe_failsafe` for each zone, and makes the next pass. `observe_zones` follows each merge. `end_step`
+/// comes last.
 ///
 /// An observer itself changes nothing. It returns a [`StepController`] to continue the step with other values.
 pub trait Observer {
@@ -22,8 +23,8 @@ pub trait Observer {
     /// Observes the start and end positions of particles (2N each) for the pass, right after `begin_pass`.
     fn observe_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// Returns the pairs whose detections this observer needs; called at least once in each pass. Unless the answer is
-    /// [`WantedPairs::Calls`], `detection` is not called, the controller does not receive single calls, and pairs are
-    /// computed many at a time.
+    /// [`WantedPairs::Calls`], `observe_detection` is not called, the controller does not receive single calls, and
+    /// pairs are computed many at a time.
     #[inline]
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Calls
@@ -35,7 +36,7 @@ pub trait Observer {
     }
     /// Observes the test of a pair.
     fn observe_detection(&mut self, _detection: &Detection<'_>) {}
-    /// Observes a pair that collides, right after `detection`, which some observers do not request.
+    /// Observes a pair that collides, right after its detection, which some observers do not request.
     fn observe_hit(&mut self, _pair: Pair) {}
     /// Observes the end of a pass in which `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
@@ -54,8 +55,8 @@ pub trait Observer {
 /// Changes values during a step, which continues with the changed values. By default the methods change nothing.
 pub trait StepController {
     /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
-    /// decision and [`Observer::observe_detection`] then use the replacements. Not called by `simple`, which has no
-    /// polynomials.
+    /// decision and [`Observer::observe_detection`] then use the replacements. `simple` does not call this method,
+    /// because it has no polynomials.
     fn adjust_polynomials(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
     /// Receives the system matrix of an implicit integrator, column by column, before each solve of a step. The step
     /// continues with the modified entries.

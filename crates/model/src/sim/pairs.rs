@@ -136,7 +136,7 @@ impl Pairs {
     }
 
     /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
-    /// number within the pair. `None` if passes have no polynomials.
+    /// number within the pair. Returns `None` if passes have no polynomials.
     pub fn locate_polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomial_count();
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));

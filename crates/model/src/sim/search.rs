@@ -22,8 +22,8 @@ pub struct SearchCounts {
     pub searched: u64,
     /// The number of calls excluded by a certificate.
     pub excluded: u64,
-    /// The number of calls in which a certificate excluded an impact that the root finder found (audit only). Must stay
-    /// zero.
+    /// The number of calls in which a certificate excluded an impact that the root finder found (audit only). It must
+    /// stay zero.
     pub disagreements: u64,
     /// The number of steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
     #[serde(skip)]
@@ -57,7 +57,7 @@ impl std::ops::AddAssign for SearchCounts {
     }
 }
 
-/// The difference is the counts since `before`.
+/// The difference gives the counts since `before`.
 impl std::ops::Sub for SearchCounts {
     type Output = Self;
     fn sub(self, before: Self) -> Self {

@@ -1,6 +1,6 @@
 //! Reads and writes traces as streams of frames.
 //!
-//! Takes readers, writers and slices; never opens a file. The format is that of `trace-format.md`.
+//! This module takes readers, writers and slices, and never opens a file. The format is that of `trace-format.md`.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod counts;

@@ -4,8 +4,8 @@
 use super::error::Malformation;
 use std::io::{self, Read};
 
-/// Size of the buffer, and of the largest piece that [`Source::ensure`] can provide in one call. A larger buffer does
-/// not make reading faster, because its pages must be created and it does not fit the cache.
+/// The size of the buffer, and of the largest piece that [`Source::ensure`] can provide in one call. A larger buffer
+/// does not make reading faster, because its pages must be created and it does not fit the cache.
 pub(crate) const WINDOW_BYTES: usize = 64 * 1024;
 
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! The certificate's closed forms for several polynomials together: the tests of `closed_form`, in the same order of
 //! operations, for polynomials that still have their small leading coefficients.
 //!
-//! The answers equal those for each polynomial alone if all numbers are finite. Lanes in which a question does not
-//! arise compute unused values.
+//! The answers equal those for each polynomial alone if all numbers are finite. Lanes to which a test does not apply
+//! compute unused values.
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
@@ -88,8 +88,8 @@ pub fn excludes_two_polynomials<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lane
 }
 
 /// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
-/// certainly not positive within the step, and the search among all of them would end. `ends` states that for the first
-/// and the last.
+/// certainly not positive within the step, and the search among all of them would end. `ends` has the lanes in which
+/// the searches of the first and the last would end.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,

@@ -14,7 +14,7 @@ struct PerturbedCoefficients<const LENGTH: usize> {
 }
 
 impl<const LENGTH: usize> PerturbedCoefficients<LENGTH> {
-    /// Returns whether the leading coefficient is clearly not zero. A NaN is not clear.
+    /// Returns whether the leading coefficient is clearly not zero. A NaN is not clearly different from zero.
     #[inline(always)]
     fn has_clear_leading(&self) -> bool {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]

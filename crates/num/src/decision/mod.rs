@@ -84,13 +84,13 @@ crate::closed_set! {
 pub struct CertifiedDecision {
     /// The decision.
     pub certainty: HitCertainty,
-    /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Yes`, it is valid for every choice of
+    /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Hits`, it is valid for every choice of
     /// coefficients; it is about as wide as the effect of the coefficients' errors, or wider if the polynomials nearly
     /// touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at most
-    /// 1), or is `None` if a coefficient is not finite. `None` for `No`.
+    /// 1), or is `None` if a coefficient is not finite. The value is `None` for `Misses`.
     pub time: Option<[f64; 2]>,
     /// The number of units `u` of the coefficients' bounds for which the decision is proved to survive errors, at least
-    /// the given `units` and at most [`MAX_MARGIN`]. The true number may be larger. 0 for `Borderline`.
+    /// the given `units` and at most [`MAX_MARGIN`]. The true number may be larger. It is 0 for `Borderline`.
     pub margin: f64,
     /// The level that was needed.
     pub level: Level,

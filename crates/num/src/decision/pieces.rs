@@ -14,7 +14,7 @@ use super::{
 /// The number of halvings after which a piece stays open.
 const MAX_DEPTH: u32 = 150;
 
-/// The width, as a share of its end, below which a piece stays open; all ends are exact until then.
+/// The width below which a piece stays open, as a share of the piece's end. The ends of wider pieces are exact.
 const MIN_WIDTH: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// The number of pieces after which all others stay open. Ordinary searches need a few hundred.
@@ -41,7 +41,7 @@ pub(crate) struct SearchOutcome {
     pub(crate) answer: Answer,
     /// The time before which a polynomial is always negative.
     pub(crate) not_before: f64,
-    /// For [`Answer::Never`], the number of units of the bounds that the result survives at least.
+    /// For [`Answer::Never`], the number of units of the bounds that the result is proved to survive.
     pub(crate) slack: f64,
 }
 
@@ -153,7 +153,7 @@ impl PieceWalk<'_> {
     }
 
     /// Brackets the only zero of a polynomial that rises through it between two times, where all others are positive.
-    /// Notes the time before as the start of an open piece, and returns the time after.
+    /// Records the time before it as the start of an open piece, and returns the time after.
     fn bracket(&mut self, control: &BernsteinForm, mut lo: f64, mut hi: f64) -> f64 {
         let polynomial = &self.problem.polynomials()[control.index];
         loop {

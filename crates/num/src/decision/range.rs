@@ -94,7 +94,7 @@ impl Problem {
         })
     }
 
-    /// Returns, if one polynomial alone proves that there is no hit within the step, the level, and the number of
+    /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step, and the number of
     /// further units of the bounds that the result survives. An empty problem is excluded.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {

@@ -1,4 +1,4 @@
-//! The section about the fair rules in the check report for programs.
+//! The section about the fair rules in the JSON document of the check report.
 use super::super::view::{FindingView, view};
 use fosssim_findings::{
     Book, Cause, Finding, FindingKind,

@@ -1,8 +1,8 @@
 //! Renders grades in every format that courses use. All functions are pure, from [`Grade`] to text.
 //!
-//! Names and program output are untrusted text. Each format removes control characters with `plain` or `to_one_line` of
-//! `foreign`, and escapes the characters that have a meaning in its syntax. A test sends hostile text through every
-//! format.
+//! Names and program output are untrusted text. Each format removes control characters with `strip_control_characters`
+//! or `to_one_line` of `untrusted_text`, and escapes the characters that have a meaning in its syntax. A test sends
+//! hostile text through every format.
 
 mod causes;
 mod changes;

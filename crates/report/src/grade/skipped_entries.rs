@@ -16,7 +16,7 @@ pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     }
 }
 
-/// Returns the list of skipped entries that follows a class's table, for people.
+/// Returns the list of skipped entries that follows a class's table in the text report.
 pub fn list_not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {
         return String::new();

@@ -73,7 +73,7 @@ impl Card {
         self.html.contains(super::case::FIRST_HEADING)
     }
 
-    /// Renders the HTML with the mistakes in it, under a key that is unique on the page.
+    /// Returns the card's HTML with the mistakes inserted. `key` makes the element IDs unique on the page.
     pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
         let html = self.html.replace(KEY_PLACEHOLDER, key);
         if html.contains(CAUSE_MARK) { html.replace(CAUSE_MARK, mistakes) } else { mistakes.to_owned() + &html }

@@ -1,9 +1,9 @@
 //! Builds what a run can see of the file system: a new root folder, which contains the files of the order under their
 //! usual paths.
 //!
-//! The places that Landlock allows (see `walls.rs`) are visible. Except for the working folder, they are read-only. Of
-//! the host's other files, not even the names are visible. Folders in memory such as `/tmp` and `/dev/shm` cannot be
-//! written, because files there would not count for any process.
+//! The places that Landlock allows (see `file_rules.rs`) are visible. Except for the working folder, they are
+//! read-only. Of the host's other files, not even the names are visible. Folders in memory such as `/tmp` and
+//! `/dev/shm` cannot be written, because files there would not count for any process.
 
 use std::{
     collections::VecDeque,

@@ -1,11 +1,11 @@
-//! The seccomp filters. They allow the calls in a list, deny some calls with an error number, and end the program for
+//! The seccomp filters. They allow the calls in a list, deny some calls with an error number, and kill the program for
 //! others.
 //!
 //! There is a separate filter for each kind of answer. For a call, the strictest answer counts, in the order kill,
 //! error, announce, allow. Of equal answers, that of the last filter counts. Forbidden calls are announced to the
 //! supervisor, which names the call and kills the program. The filter that announces is the first. If the kernel cannot
 //! announce calls, a forbidden call kills the program with `SIGSYS`. The filter for calls that do not exist is
-//! installed last, because it also removes the calls that install filters. Every filter ends programs that use another
+//! installed last, because it also removes the calls that install filters. Every filter kills programs that use another
 //! architecture's calls (32-bit `int 0x80`); x32 numbers are in no group and therefore do not exist.
 
 use std::{collections::BTreeMap, io};
@@ -238,7 +238,7 @@ fn denials_for_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<Seccomp
 
 type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// Returns the calls that end the program, and those about which the supervisor decides.
+/// Returns the calls for which the program is killed, and those about which the supervisor decides.
 fn forbidden_rules(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[NamedCall]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN_CALLS);

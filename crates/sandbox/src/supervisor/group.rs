@@ -1,11 +1,11 @@
 //! A control group for one run, if the grader may create one.
 //!
-//! The kernel then counts memory and threads at all times, ends a run that uses too much, and ends all its processes by
-//! a single command. The group is created below the group of this process, or below one of that group's parents. No
+//! The kernel then counts memory and threads at all times, kills a run that uses too much, and kills all its processes
+//! by a single command. The group is created below the group of this process, or below one of that group's parents. No
 //! controller is enabled and no other process is moved. The supervisor's own counts still decide, so that a verdict
 //! does not depend on whether a host offers groups.
 //!
-//! Version 2 is preferred. If it has no controller for memory, version 1 limits memory, but cannot end a run.
+//! Version 2 is preferred. If it has no controller for memory, version 1 limits memory, but cannot kill a run.
 
 use std::{
     ffi::CStr,
@@ -58,7 +58,7 @@ impl Group {
     /// # Errors
     ///
     /// Fails if the grader may create a group in no hierarchy. Also fails if it may create one only in version 2, and
-    /// the kernel is older than 5.14, so that it cannot end a group.
+    /// the kernel is older than 5.14, so that it cannot kill a group.
     pub(super) fn create(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
@@ -95,17 +95,17 @@ impl Group {
         self.parts.iter().map(GroupPart::entrance).collect()
     }
 
-    /// Returns whether all processes of the group can be ended by a single command.
+    /// Returns whether all processes of the group can be killed by a single command.
     pub(super) fn can_kill(&self) -> bool {
         self.unified_part().is_some()
     }
 
-    /// Ends all processes of the group, if that is possible.
+    /// Kills all processes of the group, if that is possible.
     pub(super) fn kill(&self) -> io::Result<()> {
         self.unified_part().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
 
-    /// Returns whether the kernel ended a process because the group had no memory left.
+    /// Returns whether the kernel killed a process because the group had no memory left.
     pub(super) fn was_out_of_memory(&self) -> bool {
         self.parts.iter().any(|part| {
             let file = if part.kind == HierarchyKind::Memory { c"memory.oom_control" } else { c"memory.events" };
@@ -170,8 +170,8 @@ impl HierarchyKind {
 }
 
 impl GroupPart {
-    /// Creates a group in the first of the places in which all limits work. If there is no such place, in the first one
-    /// in which a group can be created.
+    /// Creates a group in the first of the places in which all limits work. If there is no such place, uses the first
+    /// one in which a group can be created.
     fn create(kind: HierarchyKind, places: &[PathBuf]) -> io::Result<Option<Self>> {
         let (mut weaker, mut problem) = (None, None);
         for place in places {
@@ -207,7 +207,7 @@ impl GroupPart {
     fn try_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
         let (path, folder) = claim(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
-        // A group is useful only if it can be entered and, in version 2, can be ended.
+        // A group is useful only if it can be entered and, in version 2, can be killed.
         if kind == HierarchyKind::Unified {
             part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }

@@ -1,7 +1,7 @@
 //! Creates the namespaces of a run, for processes, network, messages and mounts.
 //!
 //! The supervisor itself moves into them. It forks once into a new process namespace, where it is process 1, so the
-//! kernel ends all its descendants when it ends for any reason. The process outside, the *guardian*, only waits. Root
+//! kernel kills all its descendants when it ends for any reason. The process outside, the *guardian*, only waits. Root
 //! needs no user namespace. An ordinary user gets a user namespace in which it keeps its identity and has rights only
 //! over the new namespaces. The rights end when the program is executed.
 //!

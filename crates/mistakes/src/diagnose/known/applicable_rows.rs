@@ -1,4 +1,4 @@
-//! Finds the rows of the catalogue that can show on a scene; no others are tried on it.
+//! Finds the rows of the catalogue whose mistakes can be visible on a scene. Only these are tried.
 use crate::diagnose::student_code::{changed_term, is_written_by_student};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 
-/// The maximum number of pairs of scenes on which penalty forces between distant bodies are tried.
+/// The maximum number of pairs in a scene. In larger scenes, penalty forces between distant bodies are not tried.
 const MAX_DISTANT_PAIRS: usize = 5_000;
 
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
@@ -59,7 +59,7 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
     has_stage && row.pair_kind().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// Returns whether mistakes of forces and integrators, and their effects, show.
+/// Returns whether a mistake in forces or integrators is visible on the scene.
 fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = changed_term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);

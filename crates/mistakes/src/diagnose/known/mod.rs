@@ -44,8 +44,8 @@ use trials::Trials;
 /// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
 /// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of
-/// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. A trace
-/// whose first record belongs to another scene yields only the question whether it belongs to this one
+/// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. If the
+/// first record belongs to another scene, the only explanation asks whether the trace belongs to this one
 /// ([`Explanation::OTHER_SCENE`]).
 pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
@@ -71,7 +71,7 @@ pub(super) struct KnownMistakes {
     pub(super) explanations: Vec<Explanation>,
     /// The kept steps, if no mistake explains all of them.
     pub(super) unexplained: Option<Scan>,
-    /// The keys of empty stages that are visible in the trace.
+    /// The keys of stages that are not empty, because they are visible in the trace.
     pub(super) contradicted_keys: Vec<String>,
 }
 
@@ -166,8 +166,8 @@ fn explain_combination(
     all
 }
 
-/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. `None` if no
-/// row reproduces enough, or if a correct variant does.
+/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. Returns `None`
+/// if no row reproduces enough, or if a correct variant does.
 fn find_best_mistake(
     reference: &mut Reference<'_>,
     scene: &Scene,

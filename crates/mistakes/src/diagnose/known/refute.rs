@@ -14,9 +14,9 @@ use std::cell::Cell;
 /// The maximum number of computed polynomials. Computing one takes about a microsecond.
 const MAX_WORK: u64 = 200_000;
 
-/// Returns whether the mistake changes a logged value on this scene by more than round-off. If the search would take
-/// too long, this returns `false`. It also does so if the course's library does that part of the work: in `simple` and
-/// `continuous-time` the library responds, so a program's own impulses show only in `hybrid`.
+/// Returns whether the mistake changes a logged value on this scene by more than round-off. Returns `false` if the
+/// search would take too long, or if the course's library does that part of the work: in `simple` and `continuous-time`
+/// the library responds, so a program's own impulses show only in `hybrid`.
 pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))
 }

@@ -24,7 +24,7 @@ const MAX_FOR_QUADRUPLES: usize = 26;
 /// The maximum size of a support in matching pursuit.
 const MAX_SUPPORT: usize = 8;
 
-/// Columns of equal length, prepared for fits.
+/// The nonzero columns of a least-squares problem, normalized, with their Gram matrix.
 pub(super) struct DesignMatrix {
     /// The original indices of the nonzero columns, the likely columns first.
     indices: Vec<usize>,
@@ -132,7 +132,8 @@ impl DesignMatrix {
         Some(support)
     }
 
-    /// Solves the normal equations of unit columns by Cholesky's method, or `None` if the columns are nearly dependent.
+    /// Solves the normal equations of unit columns by Cholesky's method. Returns `None` if the columns are nearly
+    /// dependent.
     fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
         let (size, count) = (chosen.len(), self.indices.len());
         let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);

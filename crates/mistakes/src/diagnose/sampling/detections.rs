@@ -123,7 +123,8 @@ impl SampleCollector<'_> {
 }
 
 /// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
-/// polynomials if possible, otherwise as many as possible. `None` if no numbers fit. `pairs` are the pairs of one pass.
+/// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pairs` are the pairs of
+/// one pass.
 fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
     let fits = |sizes: &PairKindMap<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
@@ -197,7 +198,7 @@ impl StepController for SampleCollector<'_> {
         };
         let is_right = is_right_until(q_end);
         if !is_right && pass == 0 && is_right_until(&self.mid.state.positions) {
-            // The submission's integrator went elsewhere, and the formulas are right.
+            // The submission's integrator leads to other positions, but the formulas are right.
             return;
         }
         let kind = &self.samples_by_kind[pair.kind];

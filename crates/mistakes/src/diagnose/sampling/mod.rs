@@ -1,5 +1,5 @@
 //! Collects the data of explanations from a trace in one reading. Every step is searched for wrong records, for
-//! detections, and for values that are not finite. The reference's work for all of it has one budget.
+//! detections, and for values that are not finite. One budget limits the reference's work for all three.
 mod capture;
 mod compare;
 mod detections;

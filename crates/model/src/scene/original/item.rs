@@ -27,7 +27,7 @@ impl<'e> Item<'e> {
             .map(move |(number, element)| Self { element, kind, number: Some(number), exit_code })
     }
 
-    /// Returns an element of which only the first counts.
+    /// Returns an element of a kind of which only the first is used.
     pub(super) fn from_element(element: &'e Element<'e>, kind: &'static str) -> Self {
         Self { element, kind, number: None, exit_code: 1 }
     }

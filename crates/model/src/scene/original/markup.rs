@@ -1,7 +1,7 @@
 //! The original's XML: elements of the first `scene` root, from text whose lines have been joined.
 //!
-//! A small in-situ parser without validation (scene-format.md 1.4). A closing tag closes the innermost open element,
-//! text and comments are skipped, and only the children of the scene are kept.
+//! This is a small in-situ parser without validation (scene-format.md 1.4). A closing tag closes the innermost open
+//! element, text and comments are skipped, and only the children of the scene are kept.
 use crate::scene::tag::is_space;
 use std::borrow::Cow;
 
@@ -21,7 +21,7 @@ impl Element<'_> {
     }
 }
 
-/// Joins the lines of a file like the original: line feeds vanish, and a NUL ends the text.
+/// Joins the lines of a file as the original does: line feeds vanish, and a NUL ends the text.
 pub(super) fn join_lines(bytes: &[u8]) -> Vec<u8> {
     // The original searches for the NUL after joining; the order makes no difference.
     bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()

@@ -10,9 +10,9 @@ use crate::{assignments::ForceKind, scene::forces::AttributeSource};
 ///
 /// # Errors
 ///
-/// A [`Rejection`] with the original's message if the original rejects the scene or crashes, and with this program's
-/// message if the original would read out of bounds. If there are both, a message of the original comes first, wherever
-/// it is in the file.
+/// Fails with the original's message if the original rejects the scene or crashes, and with this program's message if
+/// the original would read out of bounds. If there are both, a message of the original comes first, wherever it is in
+/// the file.
 pub fn read(bytes: &[u8]) -> Result<OriginalScene, Rejection> {
     let text = markup::join_lines(bytes);
     let elements = markup::parse(&text).map_err(Rejection::from_crash)?.ok_or_else(|| {

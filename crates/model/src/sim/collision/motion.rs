@@ -162,8 +162,8 @@ impl PairMotion {
         }
     }
 
-    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` (no hit) if it
-    /// is zero between a particle and an edge.
+    /// Returns the contact normal at `time`, from the first object to the second, not normalized. Returns `None` (no
+    /// hit) if the normal of a particle and an edge is zero.
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {
             Self::Particles { centers: [one, two], .. } => {

@@ -60,7 +60,7 @@ impl PartialEq for Zones {
     }
 }
 
-/// Joins zones and hits into connected components; memory O(particles + hits).
+/// Joins zones and hits into connected components. Its memory is O(particles + hits).
 #[derive(Debug, Clone, Default)]
 pub(super) struct ZoneBuilder {
     /// The union-find structure of the scene's particles.
@@ -70,7 +70,7 @@ pub(super) struct ZoneBuilder {
 }
 
 impl ZoneBuilder {
-    /// Starts with no sets among `particles` particles.
+    /// Removes all sets, for a scene with `particles` particles.
     pub fn begin(&mut self, particles: usize) {
         self.sets.clear();
         self.parents.clear();
@@ -132,7 +132,8 @@ impl ZoneBuilder {
                 ends[zone_of[particle] as usize] += 1;
             }
         }
-        // A counting sort leaves the particles of each zone ascending, and `ends` at the ends.
+        // A counting sort puts the particles of each zone in ascending order. `ends` then contains the ends of the
+        // zones.
         let mut start = 0;
         for end in ends.iter_mut() {
             let count = *end;

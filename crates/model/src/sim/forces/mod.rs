@@ -18,7 +18,7 @@ use nalgebra::DMatrix;
 use penalty::Penalty;
 pub use penalty::{PenaltyPairs, PenaltyTerms, SweepOrder};
 
-/// All forces of a scene in acting order.
+/// All forces of a scene, in the order in which they act.
 #[derive(Debug, Clone)]
 pub(super) struct Forces {
     list: Vec<Force>,
@@ -107,8 +107,8 @@ impl Forces {
     }
 }
 
-/// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in acting order. The penalty
-/// force, if there is one, comes last.
+/// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in the order in which they
+/// act. The penalty force, if there is one, comes last.
 pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
     let (bodies, Forces { list, penalty }) = (Bodies::new(scene), Forces::new(scene));
     let alone = list.into_iter().map(|force| Forces { list: vec![force], penalty: None });

@@ -193,7 +193,7 @@ impl IntegerPolynomial {
         a.len() == 1
     }
 
-    /// Returns the quotient by a primitive divisor without remainder.
+    /// Returns the quotient by a primitive divisor that leaves no remainder.
     fn divide_by(&self, divisor: &Self) -> Self {
         if divisor.degree() == 0 {
             return self.clone();

@@ -1,5 +1,6 @@
-//! Computes the pairs of several consecutive particles, one per lane, with every edge and every half-plane, and of one
-//! particle with several others or several edges: coefficients, and the results of the certificate's closed forms.
+//! Computes coefficients, and the results of the certificate's closed forms, for blocks of pairs. A block has several
+//! consecutive particles, one per lane, with every edge and every half-plane, or one particle with several others or
+//! several edges.
 use super::{
     super::{
         particle_edge::{self, EdgePolynomials},
@@ -17,15 +18,15 @@ use std::ops::Range;
 
 crate::drops_leading!();
 
-/// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN_BIT`]), and padding.
+/// The length of the row of a pair with an edge: its coefficients, the known facts ([`OPEN_BIT`]), and padding.
 pub(super) const EDGE_ROW_LENGTH: usize = 20;
 
 /// The index of the known facts in the row of a pair with an edge.
 pub(super) const EDGE_FACTS_INDEX: usize = 17;
 
-/// The numbers per pair of particles or pair with a half-plane: the parabola's coefficients, the known facts, the
-/// line's coefficients, and padding. A polynomial is read soon after it is stored, which is fast if both access it in
-/// the same pieces.
+/// The length of the row of a pair of particles, or of a pair with a half-plane: the parabola's coefficients, the known
+/// facts, the line's coefficients, and padding. A polynomial is read soon after it is stored, which is fast if both
+/// access it in the same pieces.
 pub(super) const SHORT_ROW_LENGTH: usize = 8;
 
 /// The index of the facts in the row.
@@ -196,7 +197,7 @@ pub(super) fn compute_particles<S: Simd>(
     store_short_rows(simd, overlap, approach, rows, largest)
 }
 
-/// Applies the certificate to pairs with edges, and stores the rows, which are `stride` apart for two lanes. Returns
+/// Applies the certificate to pairs with edges, and stores the rows. The rows of two lanes are `stride` apart. Returns
 /// the largest absolute values so far.
 #[inline(always)]
 fn store_edges<S: Simd>(

@@ -5,7 +5,7 @@
 //! If inputs are NaN, or so large that a NaN could result, no blocks are used.
 //!
 //! `lists` holds the numbers from which lanes are loaded, `group` computes blocks of pairs, `rows` visits them in the
-//! order of the trace, and `settle` decides single pairs and writes their polynomials.
+//! order of the trace, and `row_decision` decides single pairs and writes their polynomials.
 mod group;
 mod lists;
 mod row_decision;

@@ -8,8 +8,8 @@ use crate::sim::bodies::Bodies;
 use fosssim_num::vector::{Vec2, length, unit, vector_at};
 pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
 
-/// Returns the contact normal at time `t`, from the particle to the closest point of the edge's line. `None` (no hit)
-/// if it is zero; a NaN normal counts as a hit.
+/// Returns the contact normal at time `t`, from the particle to the closest point of the edge's line. Returns `None`
+/// (no hit) if the normal is zero. A NaN normal counts as a hit.
 #[inline]
 pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -> Option<Vec2> {
     let a = ((x1 + t * d1) - x2) - t * d2;

@@ -36,7 +36,7 @@ pub(super) struct Sweep {
     heights: [Vec<f64>; 2],
     /// The memory for sorting boxes.
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
-    /// The largest upper end on x of the edges up to each edge.
+    /// For each edge, the largest upper end on x of this edge and the edges before it.
     furthest: Vec<f64>,
 }
 
@@ -201,7 +201,7 @@ impl BodyExtent {
     fn from_points(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
-            // If two numbers cannot be compared, the second counts, as in the processor's instructions.
+            // If two numbers cannot be compared, the second is used, as in the processor's instructions.
             own.low[axis] = if one < other { one } else { other } - radius;
             own.high[axis] = if one > other { one } else { other } + radius;
         };
