@@ -28,7 +28,7 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         trace_file: None,
         cards: None,
         smallest: None,
-        finish: None,
+        receive_grade: None,
         timings: None,
         reference: None,
     };

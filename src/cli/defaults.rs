@@ -27,7 +27,7 @@ struct Defaults {
 /// # Errors
 ///
 /// Fails if the file can't be read, or if its contents are invalid.
-pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
+pub(super) fn add_defaults(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
         let text = match FilePlace::new(folder, DEFAULTS_FILE).read(MAX_BYTES) {
             Ok(text) => text,
@@ -40,7 +40,7 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
             continue;
         }
         let context =
-            || format!("{}: it may contain suite, output, hints and jobs", folder.join(DEFAULTS_FILE).display());
+            || format!("{} may contain only suite, output, hints and jobs", folder.join(DEFAULTS_FILE).display());
         let read: Defaults = toml::from_str(&String::from_utf8_lossy(&text)).with_context(context)?;
         let below = |name: &String| {
             let path = if folder == working { name.into() } else { folder.join(name) };

@@ -1,6 +1,6 @@
 //! Cleans up when the user interrupts the program, and makes sure that the program ends.
 //!
-//! After the first signal, a grading ends its programs and writes the results that are known. If there is no progress
+//! After the first signal, a grading kills its programs and writes the results that are known. If there is no progress
 //! for a few seconds, the program ends anyway.
 use super::{exit, progress_bars};
 use crate::suite::Cancellation;
@@ -30,12 +30,12 @@ pub(super) fn clean_up_when_interrupted() {
     static HANDLER_INSTALLED: OnceLock<()> = OnceLock::new();
     HANDLER_INSTALLED.get_or_init(|| {
         // Without a handler, an interrupt only leaves a temporary file behind, so this error is ignored.
-        drop(ctrlc::set_handler(|| end()));
+        drop(ctrlc::set_handler(|| end_program()));
     });
 }
 
 /// Removes incomplete outputs, and ends the program.
-fn end() -> ! {
+fn end_program() -> ! {
     // The code below could also block, on a lock or on a reader of the output.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
@@ -53,8 +53,8 @@ fn end() -> ! {
 /// The number of times that progress was recorded.
 static ACTIVITY_COUNT: AtomicU64 = AtomicU64::new(0);
 
-/// Records that there is progress, so that the program is not ended.
-pub(super) fn show_activity() {
+/// Records that there is progress, so that the program continues to run.
+pub(super) fn record_activity() {
     ACTIVITY_COUNT.fetch_add(1, Ordering::Relaxed);
 }
 
@@ -73,7 +73,7 @@ pub(super) fn cancellation_by_signals() -> Arc<Cancellation> {
                 let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
                     if first.elapsed() > Duration::from_secs(1) {
-                        end();
+                        end_program();
                     }
                     return;
                 }
@@ -96,5 +96,5 @@ fn end_when_idle() {
             (moves, since) = (now, Instant::now());
         }
     }
-    end();
+    end_program();
 }

@@ -67,7 +67,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
 fn parse_command(words: &[OsString]) -> Result<clap::Command> {
     let command = arguments::Arguments::command();
     match std::env::current_dir() {
-        Ok(working) if words.iter().any(|word| word == "grade") => defaults::add(command, &working),
+        Ok(working) if words.iter().any(|word| word == "grade") => defaults::add_defaults(command, &working),
         _ => Ok(command),
     }
 }

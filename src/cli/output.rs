@@ -9,7 +9,7 @@
 //! the same name is replaced, even if it is a link.
 use super::{
     console,
-    interrupt::{clean_up_when_interrupted, lock_pending_files, show_activity},
+    interrupt::{clean_up_when_interrupted, lock_pending_files, record_activity},
 };
 use crate::{
     files::{self, FilePlace, Identity, Replacement, open_for_writing},
@@ -57,13 +57,13 @@ impl Output {
             Ok(existing) => {
                 let kind = existing.file_type();
                 if inputs.contains(&Identity::from_metadata(&existing)) {
-                    bail!("it is also an input; choose another output");
+                    bail!("this is also an input; choose another output");
                 } else if kind.is_dir() {
-                    bail!("it is a directory; name a file inside");
+                    bail!("this is a folder; name a file in it");
                 } else if kind.is_char_device() {
                     return Ok(Self::Device(open_for_writing(OpenOptions::new().write(true), name)?, target));
                 } else if !kind.is_file() {
-                    bail!("it is a pipe, socket or block device; use `-` for standard output");
+                    bail!("this is a pipe, socket or block device; use `-` for standard output");
                 }
                 // Renaming would replace even a protected file, so it is checked first whether the file may be written.
                 OpenOptions::new().write(true).open(name)?;
@@ -73,10 +73,10 @@ impl Output {
             }
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
                 if name.symlink_metadata().is_ok() {
-                    bail!("it is a symbolic link to a file that does not exist");
+                    bail!("this is a symbolic link to a file that does not exist");
                 }
                 if name.file_name().is_none() || name.as_os_str().as_encoded_bytes().ends_with(b"/") {
-                    bail!("it names a directory; name a file inside");
+                    bail!("this is the name of a folder; name a file in it");
                 }
             }
             Err(error) => return Err(error.into()),
@@ -85,7 +85,7 @@ impl Output {
         if folder.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
             bail!("there is no folder {}; make it first", folder.display());
         }
-        let name = target.file_name().context("it names a directory; name a file inside")?;
+        let name = target.file_name().context("this is the name of a folder; name a file in it")?;
         let begin = || files::Folder::open_to_write(folder)?.replacement(name, mode);
         Ok(Self::File(begin_file(begin).with_context(|| format!("cannot create a file in {}", folder.display()))?))
     }
@@ -235,7 +235,7 @@ fn write_whole(
 /// Begins to write a file. If the user interrupts the program, the file is removed.
 fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
-    show_activity();
+    record_activity();
     let mut pending = lock_pending_files();
     let file = begin()?;
     pending.push(file.unfinished_path());
@@ -248,7 +248,7 @@ fn finish_file(file: Replacement) -> io::Result<()> {
     let path = file.unfinished_path();
     let finished = file.finish();
     pending.retain(|waiting| *waiting != path);
-    show_activity();
+    record_activity();
     finished
 }
 

@@ -45,7 +45,7 @@ fn render_table() -> String {
     let mut text = String::new();
     for (kind, title) in [
         (RowKind::Wrong, "Mistakes: the result is wrong."),
-        (RowKind::Variant, "Variants: other arithmetic, the same mathematics."),
+        (RowKind::Variant, "Variants: the same mathematics with other arithmetic."),
         (RowKind::Hostile, "Hostile programs."),
     ] {
         let rows: Vec<&Row> = all_rows().filter(|row| row.kind == kind).collect();

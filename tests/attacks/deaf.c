@@ -1,4 +1,4 @@
-// promise: A program that blocks and ignores every signal is also ended.
+// promise: A program that blocks and ignores every signal is also killed.
 // expect: wall
 // wall: 300
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A forbidden call in a thread ends the whole program.
+// promise: A forbidden call in a thread kills the whole program.
 // expect: violation bpf
 #include "attack.h"
 static void *attack(void *nothing) {

@@ -1,4 +1,4 @@
-// promise: A build step that ends its whole group ends only itself.
+// promise: A build step that kills its whole group kills only itself.
 // expect: signalled 9
 // policy: tools
 #include "attack.h"

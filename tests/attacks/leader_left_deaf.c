@@ -1,4 +1,4 @@
-// promise: A program that ignores every signal is ended even if its main thread has ended.
+// promise: A program that ignores every signal is killed even if its main thread has ended.
 // expect: wall
 // wall: 400
 #include "attack.h"

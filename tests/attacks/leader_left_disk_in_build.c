@@ -1,4 +1,4 @@
-// promise: The nameless files of build processes whose main threads have left count toward the folder's limit.
+// promise: The nameless files of build processes whose main threads have ended count toward the folder's limit.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left ends with the code of its last thread.
+// promise: A program whose main thread has ended ends with the code of its last thread.
 // expect: exited 0
 // leaves: honest
 #include "attack.h"

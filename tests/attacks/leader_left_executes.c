@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left cannot execute another.
+// promise: A program whose main thread has ended cannot execute another.
 // expect: violation execve
 #include "attack.h"
 static void rest(void) {

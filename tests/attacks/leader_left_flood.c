@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left floods standard output no longer than its time.
+// promise: A program whose main thread has ended cannot flood standard output beyond its time limit.
 // expect: cpu or wall
 #include "attack.h"
 static void rest(void) {

@@ -1,4 +1,4 @@
-// promise: The mapped files of a program whose main thread has left count toward the folder's limit.
+// promise: The mapped files of a program whose main thread has ended count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 static void rest(void) {

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left meets its memory limit.
+// promise: The memory limit applies to a program whose main thread has ended.
 // expect: memory
 #include "attack.h"
 static void rest(void) {

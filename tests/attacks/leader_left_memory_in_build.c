@@ -1,4 +1,4 @@
-// promise: The memory of build processes whose main threads have left counts toward the limit.
+// promise: The memory of build processes whose main threads have ended counts toward the limit.
 // expect: memory
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left meets its processor limit.
+// promise: The processor limit applies to a program whose main thread has ended.
 // expect: cpu
 #include "attack.h"
 static void rest(void) {

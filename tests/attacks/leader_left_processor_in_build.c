@@ -1,4 +1,4 @@
-// promise: The processor time of build processes whose main threads have left counts toward the limit.
+// promise: The processor time of build processes whose main threads have ended counts toward the limit.
 // expect: cpu
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left meets its limit on the clock and is ended immediately.
+// promise: A program whose main thread has ended is killed immediately at its limit on the clock.
 // expect: wall
 // wall: 500
 #include "attack.h"

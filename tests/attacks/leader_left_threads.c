@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left cannot have more threads than its limit.
+// promise: A program whose main thread has ended cannot have more threads than its limit.
 // expect: processes
 #include "attack.h"
 static void *wait_for_ever(void *nothing) {

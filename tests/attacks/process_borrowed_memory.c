@@ -1,4 +1,4 @@
-// promise: A build process that borrows the memory of its parent and never returns it is ended.
+// promise: A build process that borrows the memory of its parent and never returns it is killed.
 // expect: wall
 // policy: tools
 // wall: 400

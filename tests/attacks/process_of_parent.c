@@ -1,4 +1,4 @@
-// promise: A build process that became a child of the supervisor is ended like all others.
+// promise: A build process that became a child of the supervisor is killed like all others.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

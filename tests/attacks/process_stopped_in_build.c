@@ -1,4 +1,4 @@
-// promise: Build processes that have stopped are ended.
+// promise: Build processes that have stopped are killed.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program that waits in the kernel and that none of its own signals wakes is ended.
+// promise: A program that waits in the kernel, and that none of its own signals wakes, is killed.
 // expect: wall
 // wall: 300
 #include "attack.h"

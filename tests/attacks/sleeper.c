@@ -1,4 +1,4 @@
-// promise: A program that sleeps is stopped by the clock.
+// promise: A program that sleeps is killed at its time limit.
 // expect: wall
 // wall: 300
 #include "attack.h"

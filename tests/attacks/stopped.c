@@ -1,4 +1,4 @@
-// promise: A program that stops itself is ended by the clock.
+// promise: A program that stops itself is killed at its time limit.
 // expect: wall
 // wall: 300
 #include "attack.h"

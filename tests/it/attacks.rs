@@ -20,7 +20,7 @@ fn attacked(backend: &Backend, families: &[&str]) -> Option<PromiseTable> {
     std::fs::create_dir_all(&folder).unwrap();
     let chosen = |name: &str| families.is_empty() || families.iter().any(|family| name.starts_with(family));
     let table = selftest::run_chosen(backend, cc, &folder, chosen, |promise| match &promise.state {
-        PromiseState::Held => {}
+        PromiseState::Kept => {}
         state => eprintln!("{}: {state:?}", promise.attack),
     });
     Some(table.unwrap())
@@ -66,7 +66,7 @@ fn assert_all_held(table: &PromiseTable, at_least: usize) {
     let faults =
         table.promises.iter().filter(|promise| matches!(&promise.state, PromiseState::NotTested(why) if fault(why)));
     assert_eq!(faults.count(), 0);
-    assert!(table.count_held() >= at_least, "only {} promises were tried", table.count_held());
+    assert!(table.count_kept() >= at_least, "only {} promises were tried", table.count_kept());
 }
 
 #[test]

@@ -150,7 +150,7 @@ fn colors_only_decorate() {
         steps,
         audit: true,
         tables: true,
-        looks_like: None,
+        other_file_kind: None,
     };
     let colored = check.text(Style::Color);
     let mut plain = String::new();

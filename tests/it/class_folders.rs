@@ -232,7 +232,7 @@ fn a_class_as_platforms_export_it_is_graded() {
         ("notes.pdf", "not graded"),
     ];
     assert_eq!(found, expected, "{}", run.shown());
-    assert!(run.err().contains("notes.pdf: it is neither a program nor an archive"), "{}", run.shown());
+    assert!(run.err().contains("notes.pdf: this is neither a program nor an archive"), "{}", run.shown());
     // A second time nothing is run again.
     let again = grade(&workspace, &["class", "--output", "grades"]);
     assert!(again.err().contains("reused 4 of 5 results"), "{}", again.shown());

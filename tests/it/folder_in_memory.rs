@@ -40,7 +40,7 @@ fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
     let job = job(folder.path(), "mkdir out && cat input input > out/made && rm input && ln -s /etc/passwd link");
     let (outcome, left) = run(backend, &job);
     assert_eq!(outcome.ended, RunEnd::Exited(0));
-    let left = left.in_memory().expect("the folder");
+    let left = left.memory_folder().expect("the folder");
     assert_eq!(text(left, "out/made"), "givengiven");
     assert!(left.regular_file("input", 1000).is_err() && left.regular_file("link", 1000).is_err());
     assert!(left.regular_file("../input", 1000).is_err(), "it leads nowhere else");
@@ -60,7 +60,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
     for _ in 0..2 {
         let (outcome, left) = run(backend, &read(folder.path()).folder_in_memory());
         assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes), sizes);
-        assert_eq!((outcome.ended, left.in_memory().is_some()), (RunEnd::Exited(0), true));
+        assert_eq!((outcome.ended, left.memory_folder().is_some()), (RunEnd::Exited(0), true));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
     // Build tools, and folders on the disk.
@@ -84,7 +84,7 @@ fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let limits = Limits { memory: 256 << 20, ..small() };
     let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));
     assert_eq!(outcome.ended, RunEnd::FolderLimit);
-    let left = left.in_memory().expect("the folder");
+    let left = left.memory_folder().expect("the folder");
     let bytes: u64 =
         left.names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
     assert!(bytes <= 5 << 20, "{bytes} bytes were written");
@@ -129,7 +129,7 @@ fn without_namespaces_or_room_the_folder_is_used_as_it_lies() {
     for (backend, job) in [(&bare, job.clone()), (backend, job.limits(huge))] {
         let (outcome, left) = run(backend, &job);
         assert_eq!(outcome.ended, RunEnd::Exited(0));
-        assert!(left.in_memory().is_none());
+        assert!(left.memory_folder().is_none());
         assert_eq!(std::fs::read_to_string(folder.path().join("made")).unwrap(), "given");
         std::fs::remove_file(folder.path().join("made")).unwrap();
     }

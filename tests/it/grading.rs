@@ -306,7 +306,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         // The second time the folder for results lies among the submissions.
         let class = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades"]);
         assert_eq!(names(&class), expected(others));
-        assert!(class.err().contains("skipped mallory: it is a link"), "{}", class.shown());
+        assert!(class.err().contains("skipped mallory: this is a link"), "{}", class.shown());
         assert!(class.err().contains("skipped .dotted: its name begins with a dot"), "{}", class.shown());
         // A row for each, and what the class comes to; the scenes stand in the folder, and are shown when asked for.
         assert!(class.out().lines().count() < 25 && class.out().contains("Class: 4 submissions"), "{}", class.out());
@@ -314,7 +314,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
     let whole = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades", "--verbose"]);
     assert!(whole.out().contains("ImpulsesTests/off-centre-on-turning-edge"), "{}", whole.out());
     let other = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "other"]);
-    assert!(other.err().contains("skipped grades: it contains the results"), "{}", other.shown());
+    assert!(other.err().contains("skipped grades: the folder contains the results"), "{}", other.shown());
     let table = String::from_utf8(workspace.read("other/grades.csv")).expect("text");
     assert!(table.contains("of ") && table.contains("the program exited with code 3"), "the reason: {table}");
     assert!(String::from_utf8(workspace.read("other/class.txt")).expect("text").starts_with("Class: 4 submissions"));

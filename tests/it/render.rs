@@ -96,8 +96,8 @@ fn nonsense_is_refused_before_anything_is_written() {
         ("scene.xml --output x.gif --step 1", "--step is for one picture"),
         ("scene.xml --output x.png --step 4", "the scene has 3 steps; there is no step 4"),
         ("scene.xml --output x.mp4 --size 641x480", "an MP4 needs even width and height, not 641x480"),
-        ("scene.xml trace.bin --output trace.bin --format gif", "it is also an input"),
-        ("scene.xml --output scene.xml --format gif", "it is also an input"),
+        ("scene.xml trace.bin --output trace.bin --format gif", "this is also an input"),
+        ("scene.xml --output scene.xml --format gif", "this is also an input"),
         ("scene.xml --output no/such/x.gif", "there is no folder no/such"),
         ("scene.xml --output scene.xml --format png", "scene.xml is not a folder"),
     ] {

@@ -57,9 +57,9 @@ fn outputs_that_cannot_be_written_are_refused() {
     workspace.write("folder/inside", "");
     symlink("nowhere", workspace.path("dangling")).unwrap();
     for (output, says) in [
-        ("scene.xml", "it is also an input"),
-        ("folder", "it is a directory"),
-        ("new/", "it names a directory"),
+        ("scene.xml", "this is also an input"),
+        ("folder", "this is a folder"),
+        ("new/", "this is the name of a folder"),
         ("nowhere/trace.bin", "there is no folder nowhere; make it first"),
         ("dangling", "a symbolic link to a file that does not exist"),
     ] {

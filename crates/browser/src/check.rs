@@ -70,7 +70,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         steps: &wrong,
         audit: false,
         tables: false,
-        looks_like,
+        other_file_kind: looks_like,
     };
     let mut parts = vec![check.json().into_bytes()];
     if request.html {

@@ -158,7 +158,7 @@ pub fn gather(
 /// Returns the calls of a step that are shown in detail.
 fn find_wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     let of_step = focus.iter().filter(|focus| focus.step == step);
-    of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
+    of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::InPass), focus.pair?))).collect()
 }
 
 /// Collects the evidence, with the reference's own run and its steps from the trace's states.

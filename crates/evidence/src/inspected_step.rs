@@ -54,7 +54,7 @@ pub struct MergedZones {
 pub enum CallLog {
     /// The logged polynomials in the order of the reference's, each with the highest power first. A missing polynomial
     /// is empty.
-    These(Vec<Vec<f64>>),
+    Polynomials(Vec<Vec<f64>>),
     /// The trace has logged no polynomials of the call.
     Nothing,
     /// The call's polynomials are unknown.
@@ -108,11 +108,11 @@ pub struct InspectedStep {
 /// The selection of a pair's calls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum WantedCalls {
-    /// The wanted calls are those of the pair that find a collision.
+    /// The calls of the pair that find a collision.
     Hits,
-    /// The wanted call is that of the pair in one pass.
-    In(Pass),
-    /// The wanted calls are all calls of the pair in the step.
+    /// The call of the pair in one pass.
+    InPass(Pass),
+    /// All calls of the pair in the step.
     Every,
 }
 
@@ -212,7 +212,7 @@ impl<'a> Inspector<'a> {
             let fate = if of_call.iter().all(Option::is_none) {
                 CallLog::Nothing
             } else {
-                CallLog::These(
+                CallLog::Polynomials(
                     of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
                 )
             };
@@ -225,7 +225,7 @@ impl<'a> Inspector<'a> {
                 match &fate {
                     _ if asked.count == 0 => {}
                     CallLog::Nothing => keep_pair(&mut pass.missing_pairs, asked.pair),
-                    CallLog::These(list) if is_wrong(list) => keep_pair(&mut pass.differing_pairs, asked.pair),
+                    CallLog::Polynomials(list) if is_wrong(list) => keep_pair(&mut pass.differing_pairs, asked.pair),
                     _ => {}
                 }
             }
@@ -313,7 +313,7 @@ impl<'a> Inspector<'a> {
 fn find_log_by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
     match log {
         Some(log) if log.len() == expected => {
-            CallLog::These((first..first + count).map(|place| log.get(place).to_vec()).collect())
+            CallLog::Polynomials((first..first + count).map(|place| log.get(place).to_vec()).collect())
         }
         _ => CallLog::Unknown,
     }
@@ -372,7 +372,7 @@ impl Observer for Inspector<'_> {
             *one == pair
                 && match which {
                     WantedCalls::Hits => is_hit,
-                    WantedCalls::In(one) => *one == pass,
+                    WantedCalls::InPass(one) => *one == pass,
                     WantedCalls::Every => true,
                 }
         });

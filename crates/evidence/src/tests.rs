@@ -73,7 +73,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
     let study = call.study.as_ref().expect("an answer");
     let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
-    let CallLog::These(logged) = &call.logged else { panic!("{call:?}") };
+    let CallLog::Polynomials(logged) = &call.logged else { panic!("{call:?}") };
     assert_ne!(study.curves[number].logged.coefficients(), &logged[number][..]);
     assert!(close.passes[0].differing_pairs.contains(&place.pair));
 }

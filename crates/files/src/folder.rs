@@ -32,7 +32,7 @@ const FOLDER_MODE: u32 = 0o777;
 pub struct Folder {
     fd: Arc<OwnedFd>,
     /// The path by which the folder was opened, for messages.
-    shown: PathBuf,
+    display_path: PathBuf,
 }
 
 /// An entry of a [`Folder`].
@@ -48,7 +48,7 @@ pub enum FolderEntry {
 
 impl From<OwnedFd> for Folder {
     fn from(folder: OwnedFd) -> Self {
-        Self { fd: Arc::new(folder), shown: PathBuf::new() }
+        Self { fd: Arc::new(folder), display_path: PathBuf::new() }
     }
 }
 
@@ -59,7 +59,7 @@ impl Folder {
     /// Fails if the folder does not exist, or access is denied.
     pub fn open(path: &Path) -> io::Result<Self> {
         let folder = OpenOptions::new().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK).open(path)?;
-        Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
+        Ok(Self { fd: Arc::new(folder.into()), display_path: path.to_owned() })
     }
 
     /// Opens a folder in order to write files into it. The folder need not be readable.
@@ -68,7 +68,7 @@ impl Folder {
     /// Fails if the folder does not exist, or access is denied.
     pub fn open_to_write(path: &Path) -> io::Result<Self> {
         let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
-        Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
+        Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), display_path: path.to_owned() })
     }
 
     /// Opens a folder as [`Folder::open_to_write`] does. Missing folders on the path are created.
@@ -82,7 +82,7 @@ impl Folder {
 
     /// Returns the path by which the folder was opened.
     pub fn given_path(&self) -> &Path {
-        &self.shown
+        &self.display_path
     }
 
     /// Returns the names of all entries of the folder.
@@ -127,7 +127,7 @@ impl Folder {
     pub fn open_folder(&self, name: &OsStr) -> io::Result<Self> {
         let inner =
             open_component(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
-                Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
+                Some(libc::ELOOP) => io::Error::other("this is a link, which is not followed; remove it"),
                 _ => error,
             });
         Ok(self.inner(inner?, name))
@@ -242,7 +242,7 @@ impl Folder {
     }
 
     fn inner(&self, fd: OwnedFd, name: &OsStr) -> Self {
-        Self { fd: Arc::new(fd), shown: self.shown.join(name) }
+        Self { fd: Arc::new(fd), display_path: self.display_path.join(name) }
     }
 
     /// Opens the entry at a path of names. Each name is looked up in the folder before it.

@@ -61,7 +61,7 @@ impl Identity {
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
     let file = file.map_err(|error| match error.raw_os_error() {
-        Some(libc::ENXIO) => io::Error::other("it is a socket, or a missing device; name a regular file"),
+        Some(libc::ENXIO) => io::Error::other("this is a socket or a missing device; name a regular file"),
         _ => error,
     })?;
     let metadata = file.metadata()?;
@@ -114,7 +114,7 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     with_timeout(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let text = format!("it is larger than {limit} bytes, the limit of such a file");
+        let text = format!("the file is larger than {limit} bytes, which is the limit");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
     }
     Ok(bytes)

@@ -20,8 +20,8 @@ fosssim_num::closed_set! {
                 factor or a rounding moves coefficients across this bound",
         /// Parity rejects: a polynomial that consists only of round-off is compared with zero.
         VanishingPolynomial =
-            "the original treats a polynomial below an absolute bound of 1e-10 as zero, and the trace's round-off in \
-                it as wrong",
+            "the original treats a polynomial below an absolute bound of 1e-10 as zero, and rejects the round-off \
+                that the trace contains instead",
         /// Parity rejects: the original's approach polynomial contains the course's slip.
         ApproachForm =
             "the original has the course's slip in t^3 of the particle-edge approach polynomial, and the trace has \
@@ -68,7 +68,8 @@ fosssim_num::closed_set! {
 }
 
 impl Cause {
-    /// Returns true if the original rejects the trace and the fair rules accept it, and false in the opposite case.
+    /// Returns whether the original rejects the trace and the fair rules accept it. The result is false in the opposite
+    /// case.
     pub const fn is_original_too_strict(self) -> bool {
         (self as u8) <= (Self::BorderlineDecision as u8)
     }

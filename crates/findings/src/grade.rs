@@ -98,7 +98,7 @@ pub struct Grade {
     /// The milestone that the program probably implements, if it is another one than the suite's.
     #[serde(rename = "looks_like")]
     pub inferred_milestone: Option<Assignment>,
-    /// The common contents of the scenes in which the program crashes or exceeds a limit, if the hints allow it.
+    /// The common features of the scenes in which the program crashes or exceeds a limit, if the hints allow it.
     #[serde(rename = "located")]
     pub located_failure: Option<LocatedFailure>,
     /// The digest of the program; `None` if the submission has no program that can be run.
@@ -139,7 +139,7 @@ impl Grade {
     }
 
     /// Stores in each grade of a class which other submissions have the same program.
-    pub fn note_same_programs(grades: &mut [Self]) {
+    pub fn record_same_programs(grades: &mut [Self]) {
         let mut owners: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for grade in grades.iter() {
             if let Some(program) = &grade.program {
@@ -176,7 +176,7 @@ impl Grade {
     }
 
     /// Returns whether the grader failed on any part of the submission. Students must not get such a grade.
-    pub fn is_our_fault(&self) -> bool {
+    pub fn is_grader_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
     }
 
@@ -186,8 +186,8 @@ impl Grade {
     }
 
     /// Returns the reason why the submission as a whole could not be graded as usual. Either it has no program that can
-    /// be run, it could not be built, it belongs to another milestone, or nothing is written in it yet. `None` if there
-    /// is no such reason.
+    /// be run, it could not be built, it belongs to another milestone, or nothing is written in it yet. Returns `None`
+    /// if there is no such reason.
     pub fn submission_fault(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.inferred_milestone {
             return Some(SubmissionFault::Milestone(other));

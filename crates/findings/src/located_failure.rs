@@ -1,12 +1,12 @@
-//! The common contents of the scenes in which a program crashes or exceeds a limit.
+//! The common features of the scenes in which a program crashes or exceeds a limit.
 use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A content of a scene: a kind of event, or events of a kind that have a certain property. Both are given by their
+/// A feature of a scene: a kind of event, or the events of a kind that have a certain property. Both are given by their
 /// names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Content {
+pub struct SceneFeature {
     /// The kind of event.
     pub family: Cow<'static, str>,
     /// The name and the value of the property; `None` for all events of the kind.
@@ -17,7 +17,7 @@ fosssim_num::closed_set! {
     /// The way in which a program fails.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FailureKind {
-        /// The program is ended by a signal.
+        /// The program is killed by a signal.
         Crash = "crash",
         /// The program ends with an exit code that means an error.
         Error = "end with an error code",
@@ -32,23 +32,24 @@ fosssim_num::closed_set! {
     }
 }
 
-/// The common contents of the scenes in which the program fails.
+/// The common features of the scenes in which the program fails.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
     /// The way in which the program fails in these scenes.
     #[serde(rename = "failing")]
     pub failure: FailureKind,
-    /// The contents that all failing scenes have in common, the most general first. The scenes do not show which of
+    /// The features that all failing scenes have in common, the most general first. The scenes do not show which of
     /// them is the cause.
-    pub contents: Vec<Content>,
-    /// The number of scenes in which the program fails. All of them have these contents.
+    #[serde(rename = "contents")]
+    pub features: Vec<SceneFeature>,
+    /// The number of scenes in which the program fails. All of them have these features.
     pub failed: usize,
-    /// The number of scenes that have these contents.
+    /// The number of scenes that have these features.
     #[serde(rename = "with")]
-    pub scenes_with_contents: usize,
-    /// The number of scenes that were run and do not have these contents. The program does not fail in any of them.
+    pub scenes_with_features: usize,
+    /// The number of scenes that were run and do not have these features. The program does not fail in any of them.
     #[serde(rename = "without")]
-    pub scenes_without_contents: usize,
+    pub scenes_without_features: usize,
     /// The first scene in which the program fails.
     pub first: String,
     /// The step of the last complete record in that scene; 0 for the first record.

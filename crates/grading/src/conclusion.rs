@@ -113,7 +113,7 @@ impl SearchDepth {
     /// Searches for explanations of a trace.
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
-            Self::NotFinite => diagnose::explain_not_finite(scene, trace),
+            Self::NotFinite => diagnose::explain_non_finite_value(scene, trace),
             Self::Mistakes => diagnose::explain_kept_trace(scene, trace),
         }
     }
@@ -169,7 +169,7 @@ fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
 }
 
 /// Returns the verdict on how the program ended. If a program was stopped because it wrote bytes after the last record,
-/// it counts as ended well, because all records were judged.
+/// the run counts as successful, because all records were judged.
 fn program_verdict(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {

@@ -173,7 +173,7 @@ impl TestGrading {
             trace_file: None,
             cards: None,
             smallest: None,
-            finish: None,
+            receive_grade: None,
             timings: None,
             reference,
         }

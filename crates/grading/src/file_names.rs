@@ -19,7 +19,7 @@ pub fn to_printable(name: &OsStr) -> String {
 /// always have different texts.
 pub fn to_exact(name: &OsStr) -> String {
     // If normalization changes a letter, its length or its code point changes.
-    map_chunks(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
+    map_chunks(name, |valid| escape(valid, |c| is_mark(c) || continues_syllable(c) || !c.nfc().eq([c])))
 }
 
 fn map_chunks(name: &OsStr, text: impl Fn(&str) -> String) -> String {
@@ -57,7 +57,7 @@ fn is_mark(c: char) -> bool {
 }
 
 /// Returns whether a Hangul letter is joined to the letter before it.
-const fn is_part_of_a_syllable(c: char) -> bool {
+const fn continues_syllable(c: char) -> bool {
     matches!(c, '\u{1161}'..='\u{11ff}')
 }
 

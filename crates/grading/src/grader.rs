@@ -8,7 +8,7 @@ use super::{
     cards::Cards,
     config::Hints,
     execute::Runner,
-    failure_cause::{ContentIndex, Contents},
+    failure_cause::{FeatureIndex, Features},
     grade::Grade,
     guard::catch_panic,
     key::ResultKey,
@@ -90,7 +90,7 @@ pub struct Grader<'a> {
     /// The function that describes smallest scenes, if they were requested.
     pub smallest: Option<&'a DescribeSmallest<'a>>,
     /// A function that receives the grade. The job that completes a submission calls it.
-    pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
+    pub receive_grade: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
     /// The sums of the processor times of all runs, for `--timings`.
     pub timings: Option<&'a Timings>,
     /// The program with whose speed submissions are compared: the original, or a program in its role. With `None`,
@@ -135,8 +135,8 @@ pub(super) struct SharedGrading<'a> {
     key_released: Condvar,
     /// The reason why results can no longer be stored.
     pub(super) storage_error: OnceLock<StoreError>,
-    /// The contents of the plan's scenes. They are computed when they are first needed.
-    contents: OnceLock<Vec<Contents>>,
+    /// The features of the plan's scenes. They are computed when they are first needed.
+    features: OnceLock<Vec<Features>>,
     /// The copy of the reference program. It is made when a speed is first measured.
     reference: OnceLock<Arc<Result<StagedProgram, String>>>,
 }
@@ -155,15 +155,15 @@ impl<'a> SharedGrading<'a> {
             claimed_keys: claimed,
             key_released: released,
             storage_error: full,
-            contents,
+            features: contents,
             reference,
         }
     }
 
-    /// Returns the contents of each scene, from the reference's run. A scene that cannot be simulated to its end has
+    /// Returns the features of each scene, from the reference's run. A scene that cannot be simulated to its end has
     /// none.
-    pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
-        self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::for_scene(&task.scene)).collect())
+    pub(super) fn features(&self, plan: &Plan) -> &[Features] {
+        self.features.get_or_init(|| plan.scenes().map(|task| FeatureIndex::for_scene(&task.scene)).collect())
     }
 
     /// Returns the copy of the reference program, or the reason why it cannot be copied.
@@ -191,7 +191,7 @@ impl<'a> SharedGrading<'a> {
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lacks_card(&result, students));
         let cached = !lock(&self.stored_keys).contains(key);
-        (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
+        (!lacks_trace && !lacks_card).then_some(FinishedScene { result, is_reused: cached, claim: None })
     }
 
     /// Waits until no other job works on a key. Then returns the result if there is one, and otherwise claims the key.
@@ -248,7 +248,7 @@ impl Drop for KeyClaim<'_> {
 struct FinishedScene<'s> {
     result: SceneResult,
     /// Whether the result was reused from an earlier grading.
-    cached: bool,
+    is_reused: bool,
     /// The claim under which the result is stored; `None` if the result was found.
     claim: Option<KeyClaim<'s>>,
 }
@@ -258,7 +258,7 @@ type FoundResult = FinishedScene<'static>;
 
 impl FinishedScene<'_> {
     fn without_claim(result: SceneResult) -> Self {
-        Self { result, cached: false, claim: None }
+        Self { result, is_reused: false, claim: None }
     }
 }
 
@@ -283,7 +283,7 @@ pub(super) struct SubmissionGrading<'a> {
     /// The digest of the program at its original path; `None` if the program has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
     pub(super) staged: Mutex<Option<Arc<Result<StagedProgram, String>>>>,
-    known: Mutex<SubmissionProgress>,
+    progress: Mutex<SubmissionProgress>,
 }
 
 /// The results of a submission's scenes so far.
@@ -309,7 +309,7 @@ impl<'a> SubmissionGrading<'a> {
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            known: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported: told, missing }),
+            progress: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported: told, missing }),
         }
     }
 
@@ -323,20 +323,20 @@ impl<'a> SubmissionGrading<'a> {
                 trace: None,
             }))
         });
-        let FinishedScene { result, cached, claim } = done;
+        let FinishedScene { result, is_reused: cached, claim } = done;
         self.record_result(number, &result);
         if let Some(claim) = claim {
             self.shared.store_result(&claim.key, self.submission, &result);
         }
         tell(SceneEvent::Done(cached));
-        let mut known = lock(&self.known);
+        let mut known = lock(&self.progress);
         known.reported[number] = Some((result, cached));
         known.missing -= 1;
         if known.missing == 0 {
             let results = std::mem::take(&mut known.reported).into_iter().flatten().collect();
             drop(known);
             let grade = Box::new(self.grade(results));
-            if let Some(finish) = self.grader.finish {
+            if let Some(finish) = self.grader.receive_grade {
                 finish(&grade);
             }
             tell(SceneEvent::Graded(grade));
@@ -376,7 +376,7 @@ impl<'a> SubmissionGrading<'a> {
                     Err(done) => *done,
                     Ok(claim) => {
                         let result = self.run(staged, scene, trace.as_ref(), tell);
-                        FinishedScene { result, cached: false, claim: Some(claim) }
+                        FinishedScene { result, is_reused: false, claim: Some(claim) }
                     }
                 }
             }
@@ -423,12 +423,12 @@ impl<'a> SubmissionGrading<'a> {
 
     /// Returns the reason why a scene is skipped; `None` if it is run.
     fn skip_reason(&self, scene: usize) -> Option<NotRunReason> {
-        lock(&self.known).skip_start.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
+        lock(&self.progress).skip_start.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
 
     /// Records a result, and decides whether further scenes are skipped because of it.
     fn record_result(&self, scene: usize, result: &SceneResult) {
-        let mut known = lock(&self.known);
+        let mut known = lock(&self.progress);
         known.finished[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
         if known.skip_start.is_none_or(|(end, _)| scene < end) {
             let end = skipped_scenes::find_first_skipped(

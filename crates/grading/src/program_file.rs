@@ -13,7 +13,7 @@ pub struct ProgramFile {
     pub is_shared: bool,
     /// Whether the file belongs to another submission. This is so if the file's owner also owns that submission's
     /// folder, but not this submission's folder.
-    pub is_anothers: bool,
+    pub has_other_owner: bool,
 }
 
 /// The message if two submissions contain the same file, and it is unknown to which it belongs. Students read it as
@@ -22,15 +22,15 @@ pub(super) const SHARED_FILE: &str =
     "the program is the same file as another submission's (a hard link), and its owner is unknown";
 
 /// The message if the program's file belongs to another submission.
-pub(super) const FILE_OF_ANOTHER: &str = "it is a hard link to another submission's file";
+pub(super) const FILE_OF_ANOTHER: &str = "the program is a hard link to another submission's file";
 
 /// Returns whether an open file belongs to another submission, according to what was found when submissions were
 /// searched.
-pub(super) fn belongs_to_another(file: &File, noted: Option<&ProgramFile>) -> io::Result<bool> {
+pub(super) fn belongs_to_another(file: &File, known: Option<&ProgramFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
-    match noted {
+    match known {
         _ if metadata.nlink() == 1 => Ok(false),
-        Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
+        Some(known) if known.identity == Identity::from_metadata(&metadata) => Ok(known.has_other_owner),
         // It is unknown to which submission the file belongs, because the machine failed or the file was replaced. This
         // must not cost points.
         _ => Err(io::Error::other("the file was replaced while submissions were graded; grade again")),
@@ -49,17 +49,17 @@ mod tests {
             std::fs::write(at(name), name).expect("written");
         }
         let file = File::open(at("one")).expect("a file");
-        let noted = |name: &str, is_anothers| {
+        let known = |name: &str, has_other_owner| {
             let identity = Identity::from_metadata(&std::fs::metadata(at(name)).expect("data"));
-            ProgramFile { identity, is_shared: is_anothers, is_anothers }
+            ProgramFile { identity, is_shared: has_other_owner, has_other_owner }
         };
         assert!(!belongs_to_another(&file, None).expect("known"), "one name is enough");
         std::fs::hard_link(at("one"), at("backup")).expect("a backup");
-        assert!(!belongs_to_another(&file, Some(&noted("one", false))).expect("known"));
-        assert!(belongs_to_another(&file, Some(&noted("one", true))).expect("known"));
-        for noted in [None, Some(noted("other", false))] {
+        assert!(!belongs_to_another(&file, Some(&known("one", false))).expect("known"));
+        assert!(belongs_to_another(&file, Some(&known("one", true))).expect("known"));
+        for known in [None, Some(known("other", false))] {
             assert!(
-                belongs_to_another(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("was replaced")
+                belongs_to_another(&file, known.as_ref()).expect_err("exchanged").to_string().contains("was replaced")
             );
         }
     }

@@ -23,9 +23,9 @@ pub(super) fn skipped_result(task: &SceneTask, why: NotRunReason) -> SceneResult
     SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::Skipped(why))
 }
 
-/// A submission is skipped as well after this many times as many scenes at a limit as in a row. Each takes the whole
-/// limit, and a program that never ends in some scenes usually does not in many others.
-const SCATTERED: u32 = 4;
+/// The factor between the limit on all scenes that exceed a limit and the limit on consecutive ones. Each such scene
+/// takes the whole limit, and a program that never ends in some scenes usually does not end in many others.
+const SCATTERED_FACTOR: u32 = 4;
 
 /// Returns the first scene that is skipped, and the reason. `known` has the verdict and the duration of each finished
 /// scene.
@@ -55,7 +55,7 @@ pub(super) fn find_first_skipped(
         }
         if is_limit(verdict) {
             (scattered, worst_of_all) = (scattered + 1, worst_of_all.max(verdict));
-            if scattered == SCATTERED * patience.time_outs {
+            if scattered == SCATTERED_FACTOR * patience.time_outs {
                 return Some((number + 1, NotRunReason::Limits { scenes: scattered, verdict: worst_of_all }));
             }
         }

@@ -282,7 +282,7 @@ fn copy_file(
 
 fn too_large_error() -> CopyError {
     CopyError::Submission(format!(
-        "it contains more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes, which is too much for a submission"
+        "the submission contains more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes, which is too much"
     ))
 }
 
@@ -313,7 +313,7 @@ fn copy_folder(
     if depth > MAX_DEPTH {
         let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());
         return Err(CopyError::Submission(format!(
-            "its folders are nested more than {MAX_DEPTH} deep, in {}",
+            "the submission's folders are nested more than {MAX_DEPTH} deep, in {}",
             top.unwrap_or_default()
         )));
     }

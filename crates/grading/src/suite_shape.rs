@@ -33,11 +33,11 @@ pub enum Credit {
 /// The type that the value of a key must have.
 enum ValueKind {
     Text,
-    Texts,
+    TextList,
     /// A number in a range. The text is the name of the table, for messages about numbers out of range.
     Number(&'static str, Range<f64>),
     /// A whole number that is at least 0.
-    Whole,
+    WholeNumber,
     Flag,
     /// One of several words.
     Choice(&'static [&'static str]),
@@ -76,7 +76,7 @@ macro_rules! tables {
 
 tables! {
     RawBuild BUILD {
-        command: Vec<String> = ValueKind::Texts, true;
+        command: Vec<String> = ValueKind::TextList, true;
         program: String = ValueKind::Text, true;
         wall_seconds: f64 = ValueKind::Number("build.", 0.01..86_400.0), false;
         memory_mib: f64 = ValueKind::Number("build.", 1.0..1e6), false;
@@ -95,7 +95,7 @@ tables! {
     }
     RawGroup GROUP {
         name: Spanned<String> = ValueKind::Text, true;
-        scenes: Spanned<Vec<Spanned<String>>> = ValueKind::Texts, true;
+        scenes: Spanned<Vec<Spanned<String>>> = ValueKind::TextList, true;
         points: f64 = ValueKind::Number("", POINTS_RANGE), false;
         extra: bool = ValueKind::Flag, false;
         credit: Credit = ValueKind::Choice(&["scenes", "steps", "all"]), false;
@@ -119,13 +119,13 @@ tables! {
         runs: f64 = ValueKind::Number("speed.", 1.0..101.0), false;
     }
     RawSuite SUITE {
-        schema: Spanned<u32> = ValueKind::Whole, true;
+        schema: Spanned<u32> = ValueKind::WholeNumber, true;
         name: Spanned<String> = ValueKind::Text, true;
         milestone: String = ValueKind::Choice(&MILESTONE_NAMES), false;
         rules: Rules = ValueKind::Choice(&["parity", "fair", "both"]), false;
         hints: Hints = ValueKind::Choice(HINT_NAMES), false;
         show_output: bool = ValueKind::Flag, false;
-        run: Spanned<Vec<String>> = ValueKind::Texts, false;
+        run: Spanned<Vec<String>> = ValueKind::TextList, false;
         build: Spanned<RawBuild> = ValueKind::Table(BUILD), false;
         limits: RawLimits = ValueKind::Table(LIMITS), false;
         mistake: Vec<RawMistake> = ValueKind::Tables(MISTAKE), false;
@@ -207,7 +207,7 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
             }
             number.is_none()
         }
-        (ValueKind::Whole, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
+        (ValueKind::WholeNumber, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
         (ValueKind::Choice(words), DeValue::String(word)) => {
             let known = words.contains(&word.as_ref());
             if !known {
@@ -215,7 +215,7 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
             }
             known
         }
-        (ValueKind::Texts, DeValue::Array(list)) => {
+        (ValueKind::TextList, DeValue::Array(list)) => {
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
                 let is = with_article(item.get_ref().type_str());
@@ -237,9 +237,9 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
             true
         }
         (ValueKind::Text, _) => wrong("a text in quotes"),
-        (ValueKind::Texts, _) => wrong("a list of texts, [\"...\"]"),
+        (ValueKind::TextList, _) => wrong("a list of texts, [\"...\"]"),
         (ValueKind::Number(..), _) => wrong("a number"),
-        (ValueKind::Whole, _) => wrong("a whole number that is not negative"),
+        (ValueKind::WholeNumber, _) => wrong("a whole number that is not negative"),
         (ValueKind::Flag, _) => wrong("true or false"),
         (ValueKind::Choice(words), _) => wrong(&format!("one of {}", list_words(words, "or"))),
         (ValueKind::Table(_), _) => wrong(&format!("a table, [{name}]")),
@@ -253,7 +253,7 @@ fn read_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
         DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
-        #[expect(clippy::cast_precision_loss, reason = "what is large is out of every range")]
+        #[expect(clippy::cast_precision_loss, reason = "a large value is out of every range")]
         DeValue::Integer(number) => Some(i64::from_str_radix(number.as_str(), number.radix()).ok()? as f64),
         _ => None,
     }

@@ -80,7 +80,7 @@ pub enum ArchiveError {
     Kind(String),
     /// Two files in the archive have the same name.
     #[error("the archive contains {0} twice")]
-    Twice(String),
+    Duplicate(String),
     /// The archive has too many entries.
     #[error("the archive has more than {0} files")]
     Entries(usize),
@@ -231,7 +231,7 @@ impl Walk<'_> {
         meter.set(packed.saturating_mul(2).saturating_add(READ_OVERHEAD_BYTES * archive.len() as u64));
         // If several entries have the same name, the library keeps only one, which may be the wrong one.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
-            return Err(ArchiveError::Twice("a name".to_owned()));
+            return Err(ArchiveError::Duplicate("a name".to_owned()));
         }
         for index in 0..archive.len() {
             let mut entry = archive.by_index(index).map_err(describe_damage)?;
@@ -242,7 +242,7 @@ impl Walk<'_> {
                 return Err(ArchiveError::Kind(escape_name(&name)));
             }
             if entry.is_dir() {
-                self.note_folder(&name)?;
+                self.record_folder(&name)?;
             } else {
                 self.unpack_file(&name, mode.is_some_and(|mode| mode & 0o111 != 0), &mut entry)?;
             }
@@ -279,7 +279,7 @@ impl Walk<'_> {
             }
             let name = long_name.take().unwrap_or_else(|| entry.path_bytes().into_owned());
             match kind {
-                tar::EntryType::Directory => self.note_folder(&name)?,
+                tar::EntryType::Directory => self.record_folder(&name)?,
                 tar::EntryType::Regular | tar::EntryType::Continuous => {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
                     self.unpack_file(&name, executable, &mut entry)?;
@@ -319,22 +319,22 @@ impl Walk<'_> {
     }
 
     /// Records the folders that contain a file. Fails if one of them is a file.
-    fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
+    fn record_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen_paths.contains(folder) {
-                return Err(ArchiveError::Twice(escape_name(name)));
+                return Err(ArchiveError::Duplicate(escape_name(name)));
             }
             self.folders.insert(folder.to_owned());
         }
         Ok(())
     }
 
-    fn note_folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
+    fn record_folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
         let path = self.check_path(name)?;
         if path.iter().any(is_system_file) {
             return Ok(());
         }
-        self.note_folders_above(&path.join("a file"), name)?;
+        self.record_folders_above(&path.join("a file"), name)?;
         if let Some(folder) = self.folder {
             fs::create_dir_all(folder.join(path)).map_err(ArchiveError::Folder)?;
         }
@@ -346,9 +346,9 @@ impl Walk<'_> {
         if path.iter().any(is_system_file) {
             return self.copy(input, &mut io::sink()).map(drop);
         }
-        self.note_folders_above(&path, name)?;
+        self.record_folders_above(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen_paths.insert(path.clone()) {
-            return Err(ArchiveError::Twice(escape_name(name)));
+            return Err(ArchiveError::Duplicate(escape_name(name)));
         }
         match self.folder {
             None => drop(self.copy(input, &mut io::sink())?),

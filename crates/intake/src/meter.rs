@@ -39,7 +39,7 @@ impl<R: Read> Read for MeteredReader<R> {
         let read = self.inner.read(buffer)?;
         let Some(left) = self.meter.0.get().checked_sub(read as u64) else {
             return Err(io::Error::other(
-                "the archive takes too much work to read for its content (a possible archive bomb)",
+                "reading the archive takes too much work for its content; it may be an archive bomb",
             ));
         };
         self.meter.0.set(left);

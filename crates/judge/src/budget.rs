@@ -29,7 +29,7 @@ pub struct Budget<'a> {
     remaining: u64,
     /// The work that is allowed before the work of the scene's own run is known.
     min_work: u64,
-    is_widened: bool,
+    is_extended: bool,
 }
 
 impl<'a> Budget<'a> {
@@ -38,7 +38,7 @@ impl<'a> Budget<'a> {
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR_WORK_FACTOR } else { PARITY_WORK_FACTOR };
         let at_least = min_scene_work(scene).saturating_mul(factor);
-        Self { scene, factor, remaining: MIN_WORK.saturating_add(at_least), min_work: at_least, is_widened: false }
+        Self { scene, factor, remaining: MIN_WORK.saturating_add(at_least), min_work: at_least, is_extended: false }
     }
 
     /// Sets the floor, which is the work that is allowed for every trace.
@@ -54,7 +54,7 @@ impl<'a> Budget<'a> {
     /// Subtracts `work` from the remaining work, and returns `false` if too little remains.
     pub fn spend(&mut self, work: u64) -> bool {
         if work > self.remaining {
-            self.widen();
+            self.extend();
         }
         let rest = self.remaining.checked_sub(work);
         self.remaining = rest.unwrap_or(0);
@@ -67,7 +67,7 @@ impl<'a> Budget<'a> {
     /// Fails with a [`StepError`] of kind `Work` if no work remains.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
         if self.remaining < (MIN_WORK.saturating_add(self.min_work)) / 2 {
-            self.widen();
+            self.extend();
         }
         let begin = simulation.work();
         simulation.limit_work(begin.saturating_add(self.remaining));
@@ -77,8 +77,8 @@ impl<'a> Budget<'a> {
     }
 
     /// Adds the work of the scene's own run, once, and returns whether it added anything.
-    pub fn widen(&mut self) -> bool {
-        if std::mem::replace(&mut self.is_widened, true) {
+    pub fn extend(&mut self) -> bool {
+        if std::mem::replace(&mut self.is_extended, true) {
             return false;
         }
         let own = scene_work(self.scene).saturating_mul(self.factor).saturating_sub(self.min_work);
@@ -221,7 +221,7 @@ mod tests {
         assert!(own > MIN_WORK, "{own}");
         let mut budget = Budget::new(&scene, false);
         assert!(budget.spend(own));
-        assert!(!budget.is_widened);
+        assert!(!budget.is_extended);
     }
 
     #[test]

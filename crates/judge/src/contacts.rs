@@ -5,7 +5,7 @@ use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 pub(crate) type PairKey = (i32, i32, i32);
 
 /// Returns the key of `pair`, or `None` if the format has no numbers for the pair, so that no trace can log it.
-pub(crate) fn key(pair: Pair) -> Option<PairKey> {
+pub(crate) fn pair_key(pair: Pair) -> Option<PairKey> {
     Some((pair.kind.code(), i32::try_from(pair.first).ok()?, i32::try_from(pair.second).ok()?))
 }
 

@@ -1,7 +1,7 @@
 //! One decision of `simple` handling in detail: overlap and approach at the end of the step (collisions.md 6).
 //!
-//! Judges nothing. A decision is certain if it is the same in runs from states that differ by a few rounding errors, as
-//! in the fair rules.
+//! This check judges nothing. A decision is certain if it is the same in runs from states that differ by a few rounding
+//! errors, as in the fair rules.
 use crate::fair::{PERTURBED_RUNS, perturb};
 use fosssim_model::{
     scene::Scene,
@@ -9,9 +9,9 @@ use fosssim_model::{
 };
 use fosssim_num::vector::{Vec2, length, vector_at};
 
-/// A pair at the end of a step.
+/// A pair, and the reference's decision on its overlap, at the end of a step.
 #[derive(Debug, Clone, PartialEq)]
-pub struct OverlapStudy {
+pub struct OverlapCheck {
     /// The pair, with its motion within the step.
     pub motion: PairMotion,
     /// The velocities of its bodies at the check, after the responses to earlier pairs: that of the particle, and that
@@ -29,7 +29,7 @@ pub struct OverlapStudy {
     pub is_certain: bool,
 }
 
-impl OverlapStudy {
+impl OverlapCheck {
     /// Examines a pair in a step that starts from `before`, or returns `None` if the scene never checks the pair.
     ///
     /// # Errors
@@ -37,7 +37,7 @@ impl OverlapStudy {
     pub fn for_pair(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
         let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
         let mut run = |seed| {
-            let mut watch = PairWatch { scene, pair, found: None };
+            let mut watch = OverlapObserver { scene, pair, found: None };
             simulation.state_mut().clone_from(before);
             perturb(simulation.state_mut(), seed);
             simulation.set_steps_done(step - 1);
@@ -64,13 +64,13 @@ impl OverlapStudy {
 }
 
 /// An observer that records a pair when it is checked.
-struct PairWatch<'a> {
+struct OverlapObserver<'a> {
     scene: &'a Scene,
     pair: Pair,
-    found: Option<OverlapStudy>,
+    found: Option<OverlapCheck>,
 }
 
-impl Observer for PairWatch<'_> {
+impl Observer for OverlapObserver<'_> {
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, velocities, decision, .. } = detection;
         if pair != self.pair {
@@ -98,7 +98,7 @@ impl Observer for PairWatch<'_> {
         };
         let velocities = [vector_at(velocities, first), other];
         let collides = decision.collides();
-        self.found = Some(OverlapStudy { motion, velocities, alpha, normal, reach, collides, is_certain: true });
+        self.found = Some(OverlapCheck { motion, velocities, alpha, normal, reach, collides, is_certain: true });
     }
 }
 
@@ -109,7 +109,7 @@ mod tests {
     use fosssim_model::sim::PairKind;
 
     /// Returns a ball above an edge that falls by `way` within a step.
-    fn study(way: f64) -> OverlapStudy {
+    fn study(way: f64) -> OverlapCheck {
         let scene = scene(&format!(
             r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>
             <particle m="1" px="-1" py="0" vx="0" vy="0" fixed="1"/>
@@ -118,7 +118,7 @@ mod tests {
             <edge i="0" j="1" radius="0.1"/></scene>"#
         ));
         let pair = Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 };
-        OverlapStudy::for_pair(&scene, 1, &State::for_scene(&scene), pair).expect("a step").expect("asked")
+        OverlapCheck::for_pair(&scene, 1, &State::for_scene(&scene), pair).expect("a step").expect("asked")
     }
 
     #[test]

@@ -124,9 +124,9 @@ impl RecordPlaces {
     /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
     /// rounds end, so passes are counted as rounds.
     fn place_at(&self, index: usize) -> PolynomialPlace {
-        // A scene without pairs has no recording with polynomials, so this place is never shown.
-        let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
-        let (number, pair, which) = self.pairs.locate_polynomial(index).unwrap_or(nobody);
+        // A scene without pairs has no recording with polynomials, so this placeholder is never shown.
+        let placeholder = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
+        let (number, pair, which) = self.pairs.locate_polynomial(index).unwrap_or(placeholder);
         let round = u32::try_from(number).unwrap_or(u32::MAX);
         let stage = if self.is_continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
         let pass = Pass { stage, index: round };

@@ -31,7 +31,8 @@ use workers::Workers;
 
 /// The size of the frames, in bytes, at which a batch is full.
 const BATCH_BYTES: usize = 1 << 18;
-/// The size in bytes above which no other batch is read next to a batch, so that only one large record is in memory.
+/// The size of a batch, in bytes, above which no second batch is read at the same time, so that only one large record
+/// is in memory.
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// The number of steps at which a batch is full.
 const BATCH_STEPS: usize = 256;
@@ -85,8 +86,8 @@ pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, pro
     judge_with_memory(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
-/// Judges like [`judge`], with `memory` bytes for the lists of a record, and with another floor of work, if `floor` is
-/// given.
+/// Judges like [`judge`], with `memory` bytes for the lists of a record. If `floor` is given, it is the work that is
+/// allowed for every trace.
 ///
 /// This function is compiled only here, for every source of traces. Generic code would be compiled in the calling
 /// crate, at that crate's optimization level.
@@ -128,14 +129,14 @@ struct Replay<'a, R> {
     steps_read: u32,
     /// The check for states that have no meaningful continuation, if the fair rules judge.
     reach: Option<Reach<'a>>,
-    /// The remaining work of each rule book. The original's always judges. The work of one rule book does not count for
-    /// the other.
+    /// The remaining work of each rule book. The original's rules always judge. The work of one rule book is not
+    /// subtracted from the other's.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
     /// The damage of the last record, if the record could not be read.
     damage: Option<Damage>,
     /// Whether the first record, or a record of the delivered steps, is damaged.
-    damaged: bool,
+    has_damage: bool,
     /// The judgement of the fair rules so far, if they judge.
     judging: Option<Box<JudgementBuilder>>,
     outcome: Outcome,
@@ -166,7 +167,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             let mut has_more = false;
             for (budget, work) in self.budgets.iter_mut().zip(current.work()) {
-                has_more |= work > budget.remaining() && budget.widen();
+                has_more |= work > budget.remaining() && budget.extend();
             }
             if has_more && current.has_waiting_step() {
                 workers.judge(&current, &self.step_rules, self.remaining_work(), is_last);
@@ -227,7 +228,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             budgets: [false, true].map(|fair| Budget::new(scene, fair)),
             order: ContestOrder::new(scene),
             damage: None,
-            damaged: false,
+            has_damage: false,
             judging: fair.then(Box::default),
             outcome: Outcome { collisions: scene.collision.kind(), ..Outcome::empty(layout.steps) },
         }
@@ -246,9 +247,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mut frame = LenientFrame::default();
         let mut damage = None;
         self.read_frame(&mut frame, &mut damage)?;
-        self.damaged = damage.is_some();
+        self.has_damage = damage.is_some();
         self.outcome.damage = damage;
-        if let (false, Some(context), Some(judgement)) = (self.damaged, self.step_rules.fair, &mut self.judging) {
+        if let (false, Some(context), Some(judgement)) = (self.has_damage, self.step_rules.fair, &mut self.judging) {
             judgement.add_initial(&fair::judge_initial(&context, &frame));
         }
         self.state = frame.state;
@@ -334,7 +335,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 self.outcome.stop = Some(beyond_limit(slot, self.step_rules.layout));
                 return true;
             }
-            self.damaged |= slot.damage.is_some();
+            self.has_damage |= slot.damage.is_some();
             if self.outcome.damage.is_none() {
                 self.outcome.damage = slot.damage.take();
             }
@@ -346,7 +347,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             tally::add_residuals(&mut parity.residuals, &slot.result.residuals);
             parity.findings.counts += slot.result.counts;
             // The rest of a damaged record counts for the original, but its numbers prove no mistake.
-            if !self.damaged {
+            if !self.has_damage {
                 slot.result.first_findings.iter().for_each(|first| parity.findings.keep_first(first));
                 self.deliver_fair(slot);
             }
@@ -355,13 +356,13 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             let outcome = &mut self.outcome;
             outcome.steps_judged += 1;
-            outcome.damaged_steps += u32::from(self.damaged);
+            outcome.damaged_steps += u32::from(self.has_damage);
             progress.observe_step_end(slot.step, &slot.result.remarks);
-            if slot.result.counts.total() > 0 && !self.damaged {
+            if slot.result.counts.total() > 0 && !self.has_damage {
                 outcome.parity.findings.wrong_steps += 1;
             }
             let is_right = slot.result.first_findings.is_empty() && slot.fair_judgement.findings.is_empty();
-            if !is_right && !self.damaged {
+            if !is_right && !self.has_damage {
                 let parity = StepFindings {
                     first_findings: &slot.result.first_findings,
                     further_counts: slot.result.further_counts(),
@@ -404,9 +405,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             slot.fair_judgement = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
             let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgement));
-            let identical = slot.result.identical;
+            let identical = slot.result.is_identical;
             let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.remaining());
-            if work > budget.remaining() && budget.widen() {
+            if work > budget.remaining() && budget.extend() {
                 (judged, work) = reach.judge(context, records, identical, None, budget.remaining());
             }
             has_judged = budget.spend(work);
@@ -422,7 +423,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 }
 
-/// Returns the stop at an end record that is as long as the reference's, and longer than the kept part.
+/// Returns the reason to stop at an end record whose lists are as long as the reference's, but longer than the kept
+/// part.
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged_polynomials, slot.end.polynomials.len());
     Stop::Trace {

@@ -8,7 +8,7 @@ mod pending;
 use pending::PendingFindings;
 
 use super::{
-    contacts::{Contacts, key, logged_key},
+    contacts::{Contacts, logged_key, pair_key},
     counts::FindingCounts,
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, Role},
     parity::Residuals,
@@ -46,7 +46,7 @@ pub(super) struct StepResult {
     pub(super) residuals: Vec<(f64, f64)>,
     /// Whether the step's states, impulses and polynomials are identical to the reference's, after small leading
     /// coefficients are dropped.
-    pub(super) identical: bool,
+    pub(super) is_identical: bool,
 }
 
 impl StepResult {
@@ -56,7 +56,7 @@ impl StepResult {
         self.first_findings.clear();
         self.residuals.clear();
         self.counts = FindingCounts::default();
-        self.identical = false;
+        self.is_identical = false;
     }
 
     /// Returns the number of findings of each kind after the first.
@@ -111,7 +111,7 @@ pub(super) struct Tally<'a> {
     /// The number of polynomials of the reference so far.
     polynomials: usize,
     /// Whether everything compared so far is identical.
-    identical: bool,
+    is_identical: bool,
 }
 
 impl<'a> Tally<'a> {
@@ -138,7 +138,7 @@ impl<'a> Tally<'a> {
             result,
             passes: 0,
             polynomials: 0,
-            identical: true,
+            is_identical: true,
         }
     }
 
@@ -147,7 +147,7 @@ impl<'a> Tally<'a> {
     fn measure_likeness(&self, own: &[u8]) -> Likeness {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
         if index >= log.len() {
-            return Likeness::Open;
+            return Likeness::Undecided;
         }
         let actual = log.get(index);
         match (actual.len(), own.len()) {
@@ -158,7 +158,7 @@ impl<'a> Tally<'a> {
             (4, 32) => measure_likeness::<4>(own, actual),
             (5, 40) => measure_likeness::<5>(own, actual),
             (6, 48) => measure_likeness::<6>(own, actual),
-            _ => Likeness::Open,
+            _ => Likeness::Undecided,
         }
     }
 
@@ -173,12 +173,12 @@ impl<'a> Tally<'a> {
             self.compare_impulses();
         }
         if has_polynomials {
-            self.identical &= self.frame.logged_polynomials == self.polynomials;
+            self.is_identical &= self.frame.logged_polynomials == self.polynomials;
             self.finish_polynomials();
         }
         let is_same = is_same_state(reference, &self.frame.state);
-        self.identical &= is_same;
-        self.result.identical = self.identical;
+        self.is_identical &= is_same;
+        self.result.is_identical = self.is_identical;
         // Residuals between equal numbers are zero and add nothing; residuals between infinities are NaN and are
         // skipped.
         if !is_same || !reference.is_finite() {
@@ -194,11 +194,11 @@ impl<'a> Tally<'a> {
     fn compare_impulses(&mut self) {
         let own = std::mem::take(&mut self.buffers.impulses);
         let theirs = &self.frame.impulses;
-        self.identical &= own.len() == theirs.len()
+        self.is_identical &= own.len() == theirs.len()
             && own.iter().zip(theirs).all(|(own, logged)| LoggedImpulse::from(*own).is_same(logged));
         let by_pair = Contacts::from_impulses(theirs);
-        let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.indices_of(key).next());
-        let mut own_keys: Vec<_> = own.iter().filter_map(|own| key(own.pair)).collect();
+        let logged = |own: &Impulse| pair_key(own.pair).and_then(|key| by_pair.indices_of(key).next());
+        let mut own_keys: Vec<_> = own.iter().filter_map(|own| pair_key(own.pair)).collect();
         own_keys.sort_unstable();
         for expected in own.iter().filter(|own| logged(own).is_none()) {
             self.result.remarks.push(Remark::Missed(*expected));
@@ -221,7 +221,7 @@ impl<'a> Tally<'a> {
         self.buffers.impulses = own;
     }
 
-    /// Settles the findings about polynomials. If the number of polynomials is wrong, that is the only finding
+    /// Completes the findings about polynomials. If the number of polynomials is wrong, that is the only finding
     /// (oracle-behavior.md 6.2).
     fn finish_polynomials(&mut self) {
         let actual = self.frame.logged_polynomials;
@@ -265,7 +265,7 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference like oracle-behavior.md 6.2. `place` is called for its place, if
+    /// Compares the next polynomial of the reference as in oracle-behavior.md 6.2. `place` computes its place, if it is
     /// needed.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
@@ -277,7 +277,7 @@ impl<'a> Tally<'a> {
         if are_equal_and_safe(expected, actual) {
             return;
         }
-        self.identical = self.identical && has_same_bits(expected, actual);
+        self.is_identical = self.is_identical && has_same_bits(expected, actual);
         if !is_accepted(expected, actual) {
             let at = (self.step, self.frame_number);
             self.buffers.pending.compare(at, expected, actual, place);
@@ -311,10 +311,10 @@ impl Observer for Tally<'_> {
                 }
                 Likeness::Factor => {
                     self.polynomials += 1;
-                    self.identical = false;
+                    self.is_identical = false;
                     continue;
                 }
-                Likeness::Same | Likeness::Open => {}
+                Likeness::Same | Likeness::Undecided => {}
             }
             let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
             places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
@@ -343,7 +343,7 @@ impl Observer for Tally<'_> {
 impl StepController for Tally<'_> {
     fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
-            self.identical &= mid.logged_polynomials == self.polynomials && is_same_state(state, &mid.state);
+            self.is_identical &= mid.logged_polynomials == self.polynomials && is_same_state(state, &mid.state);
             state.clone_from(&mid.state);
         }
         ResumeState::Own
@@ -392,7 +392,7 @@ enum Likeness {
     /// The polynomial differs by a factor, and [`is_accepted`] accepts it.
     Factor,
     /// The quick comparison does not decide.
-    Open,
+    Undecided,
 }
 
 /// Compares both polynomials with one division for all coefficients. Its rounding differs from the original's by less
@@ -401,7 +401,7 @@ enum Likeness {
 fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())
     else {
-        return Likeness::Open;
+        return Likeness::Undecided;
     };
     let own = own.map(f64::from_le_bytes);
     let difference = own.iter().zip(actual).fold(0, |all, (own, actual)| all | own.to_bits() ^ actual.to_bits());
@@ -419,7 +419,7 @@ fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness
         let rescaled = own * factor;
         all &= ((actual - rescaled).abs() <= 0.9 * PARITY_COEFFICIENT_DIFFERENCE) & (rescaled.abs() <= 1e3);
     }
-    if all { Likeness::Factor } else { Likeness::Open }
+    if all { Likeness::Factor } else { Likeness::Undecided }
 }
 
 /// Returns the sum of absolute values, left to right from zero.
@@ -478,12 +478,12 @@ mod tests {
                     assert!(is_accepted(&own, &actual) && !has_same_bits(&own, &actual), "{own:?} {actual:?}");
                     clear += 1;
                 }
-                Likeness::Open => assert!(!has_same_bits(&own, &actual)),
+                Likeness::Undecided => assert!(!has_same_bits(&own, &actual)),
             }
         }
         assert!(clear > 5000, "{clear}");
         let nan = [f64::NAN, 1.0, 1.0];
-        assert_eq!(measure_likeness::<3>(&[0; 24], &nan), Likeness::Open);
+        assert_eq!(measure_likeness::<3>(&[0; 24], &nan), Likeness::Undecided);
     }
 
     #[test]

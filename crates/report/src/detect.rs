@@ -43,7 +43,7 @@ pub struct CallPlace<'a> {
 }
 
 /// A function that formats numbers, either with all digits or as in a calculation by hand.
-pub(crate) type ShownNumber = fn(f64) -> String;
+pub(crate) type FormatFn = fn(f64) -> String;
 
 /// A detection call, as the report shows it.
 #[derive(Debug, Clone, Copy)]
@@ -81,15 +81,15 @@ impl Detect<'_> {
             }
             Decision::Miss { .. } if answer.decision.time().is_finite() => {
                 format!(
-                    "no collision in this step: all polynomials are positive from time {time} on, which is after \
-                    it"
+                    "no collision in this step: all polynomials are positive from time {time} on, which is after the \
+                        step"
                 )
             }
             Decision::Miss { .. } => "no collision: at no time from 0 on are all polynomials positive".to_owned(),
         }
     }
 
-    /// Renders the report for people.
+    /// Renders the report as text.
     pub fn text(&self, style: Style) -> String {
         let study = self.study;
         let mut text = style.paint(TextStyle::Strong, &self.title()) + "\n";
@@ -105,7 +105,7 @@ impl Detect<'_> {
     }
 
     /// Renders the polynomials of the reference and of the trace, and the decision. `number` formats numbers.
-    pub(crate) fn computation(&self, number: ShownNumber, style: Style) -> String {
+    pub(crate) fn computation(&self, number: FormatFn, style: Style) -> String {
         let study = self.study;
         let mut text = format!(
             "\n{}\n",
@@ -125,7 +125,7 @@ impl Detect<'_> {
         if let Some(place) = self.place.filter(|place| place.trace.is_some() && place.pass.is_some()) {
             text += &format!("\n{}\n", style.paint(TextStyle::Strong, "What the trace logged"));
             match place.logged {
-                CallLog::These(logged) => {
+                CallLog::Polynomials(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
                         // The lists may have different lengths, because the course's library drops small leading
@@ -135,7 +135,7 @@ impl Detect<'_> {
                             format!(
                                 "  {}: {}\n    {}\n",
                                 curve.role,
-                                style.paint(TextStyle::Good, mark),
+                                style.paint(TextStyle::Right, mark),
                                 format_polynomial(own, format_exact)
                             )
                         } else {
@@ -144,8 +144,8 @@ impl Detect<'_> {
                     }
                 }
                 CallLog::Nothing => {
-                    text +=
-                        &format!("  {}\n", style.paint(TextStyle::Bad, "nothing is logged for this pair in this pass"))
+                    let nothing = "nothing is logged for this pair in this pass";
+                    text += &format!("  {}\n", style.paint(TextStyle::Wrong, nothing))
                 }
                 CallLog::Unknown => {
                     text +=
@@ -155,7 +155,7 @@ impl Detect<'_> {
         }
         text += &format!("\n{}\n", style.paint(TextStyle::Strong, "Decision"));
         text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive_intervals, number));
-        let look = if study.answer.decision.collides() { TextStyle::Notice } else { TextStyle::Good };
+        let look = if study.answer.decision.collides() { TextStyle::Notice } else { TextStyle::Right };
         text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
         text += match study.certain_decision {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
@@ -168,7 +168,7 @@ impl Detect<'_> {
         text
     }
 
-    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report as one JSON object, indented, with a line feed at its end.
     pub fn json(&self) -> String {
         let study = self.study;
         let view = DetectView {
@@ -200,16 +200,16 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
 /// by power.
 fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
-        return format!("  {role}: {}\n", style.paint(TextStyle::Bad, "missing"));
+        return format!("  {role}: {}\n", style.paint(TextStyle::Wrong, "missing"));
     }
     let factor = find_factor(expected, own);
     let wrong = find_differing_powers(expected, own, factor);
     let same = expected == own;
     let (look, mark) = match wrong.is_empty() {
-        true if same => (TextStyle::Good, "the same".to_owned()),
-        true if factor == 1.0 => (TextStyle::Good, "the same except for rounding".to_owned()),
-        true => (TextStyle::Good, format!("the same except for the factor {}, which is right", format_exact(factor))),
-        false => (TextStyle::Bad, "differs".to_owned()),
+        true if same => (TextStyle::Right, "the same".to_owned()),
+        true if factor == 1.0 => (TextStyle::Right, "the same except for rounding".to_owned()),
+        true => (TextStyle::Right, format!("the same except for the factor {}, which is right", format_exact(factor))),
+        false => (TextStyle::Wrong, "differs".to_owned()),
     };
     let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), format_polynomial(own, format_exact));
     if wrong.is_empty() {
@@ -223,7 +223,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
                 .checked_sub(power + 1)
                 .map_or_else(|| "none".to_owned(), |place| format_exact(list[place] * factor))
         };
-        let mark = if wrong.contains(&power) { Cell::with_style(TextStyle::Bad, "<- differs") } else { "".into() };
+        let mark = if wrong.contains(&power) { Cell::with_style(TextStyle::Wrong, "<- differs") } else { "".into() };
         table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
     }
     text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));
@@ -237,7 +237,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
 }
 
 /// Describes what the mathematically right approach polynomial would change.
-fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> String {
+fn compare_approach(course: &Answer, right: &Answer, number: FormatFn) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
@@ -250,7 +250,7 @@ fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> Str
 }
 
 /// Describes the objects of a pair and their motions.
-pub(crate) fn render_motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
+pub(crate) fn render_motion(motion: &PairMotion, number: FormatFn, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
     table.heading(["", "start", "displacement", "radius"]);
@@ -279,7 +279,7 @@ pub(crate) fn render_motion(motion: &PairMotion, number: ShownNumber, style: Sty
 }
 
 /// Describes a polynomial, its zeros, and the intervals in which it is positive.
-fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style) -> String {
+fn polynomial_lines(name: &str, curve: &Curve, number: FormatFn, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", format_polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
@@ -304,7 +304,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
 }
 
 /// Formats intervals as text, such as `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
-fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
+fn format_intervals(list: &[Interval], number: FormatFn) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
@@ -318,7 +318,7 @@ fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
 
 /// Formats a polynomial as text, such as `-0.25 t^2 + t - 0.1875`. An empty list is the zero polynomial. Zero
 /// coefficients are left out, except for a leading one, which a log should not contain.
-pub(crate) fn format_polynomial(coefficients: &[f64], number: ShownNumber) -> String {
+pub(crate) fn format_polynomial(coefficients: &[f64], number: FormatFn) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
     }
@@ -389,7 +389,7 @@ view! {
         /// here, and if all are missing, there are no lists. Null for the reference's own run, and if the trace logs
         /// another number of polynomials in the pass, because its lists can't be assigned to calls then.
         logged: Option<Vec<Vec<WrittenNumber>>> = match place.logged {
-            CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
+            CallLog::Polynomials(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
             CallLog::Nothing | CallLog::Unknown => None,
         },

@@ -25,7 +25,7 @@ pub struct Diagnosis {
     pub cases: Vec<Case>,
     /// The mistakes that explain several traces, the most frequent first. The list is empty if there is only one trace.
     pub common: Vec<Explanation>,
-    /// The common contents of the scenes in which the program crashes or exceeds a limit.
+    /// The common features of the scenes in which the program crashes or exceeds a limit.
     pub located: Option<LocatedFailure>,
     /// The smallest scene for each cause, if the user requested it.
     pub smallest: Vec<SmallestScene>,
@@ -37,7 +37,7 @@ impl Diagnosis {
         self.cases.iter().all(|case| case.accepted)
     }
 
-    /// Renders the report for people.
+    /// Renders the report as text.
     pub fn text(&self, style: Style) -> String {
         let smallest: String = self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, style))).collect();
         match &self.cases[..] {
@@ -90,7 +90,7 @@ impl Diagnosis {
         self.common.iter().filter(is_said).any(|common| is_named_in(common, std::slice::from_ref(explanation)))
     }
 
-    /// Renders the report for programs.
+    /// Renders the report as JSON.
     pub fn json(&self) -> String {
         to_document(&DiagnosisView::from(self))
     }
@@ -98,7 +98,7 @@ impl Diagnosis {
 
 fn render_head(case: &Case, style: Style) -> String {
     let verdict =
-        if case.accepted { style.paint(TextStyle::Good, "right") } else { style.paint(TextStyle::Bad, "wrong") };
+        if case.accepted { style.paint(TextStyle::Right, "right") } else { style.paint(TextStyle::Wrong, "wrong") };
     let mut line = format!("{verdict}  {}", case.scene);
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
@@ -120,7 +120,7 @@ fn render_single(case: &Case, style: Style) -> String {
             text,
             "{}",
             style.paint(
-                TextStyle::Good,
+                TextStyle::Right,
                 "There is nothing to explain: the fair rules accept the \
             trace."
             )
@@ -156,8 +156,8 @@ view! {
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// The common contents of scenes in which the program crashes or exceeds a limit, as text; null if there are
-        /// no such scenes.
+        /// The common features of scenes in which the program crashes or exceeds a limit, as text; null if there are no
+        /// such scenes.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
         /// The mistake that explains most of the wrong traces; null if there is only one trace.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),

@@ -17,9 +17,9 @@ pub enum Style {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextStyle {
     /// A verdict or a value that is right.
-    Good,
+    Right,
     /// A verdict or a value that is wrong.
-    Bad,
+    Wrong,
     /// A warning or a notice.
     Notice,
     /// A heading.
@@ -33,8 +33,8 @@ impl Style {
     pub fn paint(self, look: TextStyle, text: &str) -> String {
         let code = match (self, look) {
             (Self::Plain, _) => return text.to_owned(),
-            (_, TextStyle::Good) => "1;32",
-            (_, TextStyle::Bad) => "1;31",
+            (_, TextStyle::Right) => "1;32",
+            (_, TextStyle::Wrong) => "1;31",
             (_, TextStyle::Notice) => "33",
             (_, TextStyle::Strong) => "1",
             (_, TextStyle::Faint) => "2",

@@ -93,14 +93,14 @@ mod tests {
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
         table.heading(["name", "n", "note"]);
         table.row(["a".into(), "100".into(), "".into()]);
-        table.row(["longer".into(), "".into(), Cell::with_style(TextStyle::Bad, "no")]);
+        table.row(["longer".into(), "".into(), Cell::with_style(TextStyle::Wrong, "no")]);
         assert_eq!(table.render(Style::Plain), "  name       n   note\n  a        100\n  longer         no\n");
     }
 
     #[test]
     fn colors_do_not_move_columns() {
         let mut table = Table::new([Align::Right, Align::Left]);
-        table.row([Cell::with_style(TextStyle::Good, "1"), "x".into()]);
+        table.row([Cell::with_style(TextStyle::Right, "1"), "x".into()]);
         table.row(["10".into(), "y".into()]);
         assert_eq!(table.render(Style::Color), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
     }

@@ -69,10 +69,10 @@ impl Supervisor {
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
             Ok(SpawnedSupervisor { host: RunSupervisor::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
-        let asked = begin().map_err(|source| self.start_error(source))?;
+        let spawned = begin().map_err(|source| self.start_error(source))?;
         // If the supervisor does not read the order, its answer or the way in which it ends shows the reason.
-        let _ = wire::send(&asked.control, order);
-        Ok(asked)
+        let _ = wire::send(&spawned.control, order);
+        Ok(spawned)
     }
 
     /// Sends a request to a keeper of runs of this kind. If there is none, a keeper is started. Also returns whether
@@ -162,15 +162,15 @@ enum BackendKind {
 }
 
 impl BackendKind {
-    fn launcher(supervisor: Supervisor, walls: ActiveLayers) -> Self {
-        Self::Launcher { supervisor, layers: walls, keepers: Arc::default() }
+    fn launcher(supervisor: Supervisor, layers: ActiveLayers) -> Self {
+        Self::Launcher { supervisor, layers, keepers: Arc::default() }
     }
 }
 
 impl std::fmt::Debug for Backend {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let kind = match &self.kind {
-            BackendKind::Launcher { layers: walls, .. } => format!("{walls:?}"),
+            BackendKind::Launcher { layers, .. } => format!("{layers:?}"),
             BackendKind::Fake(_) => "Fake".into(),
         };
         formatter.debug_struct("Backend").field("kind", &kind).finish_non_exhaustive()
@@ -187,8 +187,8 @@ impl Backend {
     /// Without them only [`Backend::without_sandbox`] can run programs.
     pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::select_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: BackendKind::launcher(supervisor, walls), layers: reports.into() })
+        let layers = layers::select_layers(&reports).map_err(missing_layers)?;
+        Ok(Self { kind: BackendKind::launcher(supervisor, layers), layers: reports.into() })
     }
 
     /// Returns this backend with the layers in `reports`, and with the file rules of a kernel that has this Landlock
@@ -196,8 +196,8 @@ impl Backend {
     fn with_layers(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             BackendKind::Launcher { supervisor, .. } => {
-                let walls = layers::select_layers(&reports).map_err(missing_layers)?;
-                BackendKind::launcher(supervisor.clone(), ActiveLayers { landlock_version, ..walls })
+                let layers = layers::select_layers(&reports).map_err(missing_layers)?;
+                BackendKind::launcher(supervisor.clone(), ActiveLayers { landlock_version, ..layers })
             }
             BackendKind::Fake(script) => BackendKind::Fake(script.clone()),
         };
@@ -232,8 +232,8 @@ impl Backend {
     /// programs are never run as root. Also fails if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::available_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: BackendKind::launcher(supervisor, walls), layers: reports.into() })
+        let layers = layers::available_layers(&reports).map_err(missing_layers)?;
+        Ok(Self { kind: BackendKind::launcher(supervisor, layers), layers: reports.into() })
     }
 
     /// Returns whether all layers that are required on this host work.
@@ -272,8 +272,8 @@ impl Backend {
     ///
     /// Fails if the grader or the host fails.
     pub fn start(&self, job: &Job) -> Result<RunningProgram, SandboxError> {
-        let (supervisor, walls, keepers) = match &self.kind {
-            BackendKind::Launcher { supervisor, layers: walls, keepers } => (supervisor, *walls, keepers),
+        let (supervisor, layers, keepers) = match &self.kind {
+            BackendKind::Launcher { supervisor, layers, keepers } => (supervisor, *layers, keepers),
             BackendKind::Fake(script) => {
                 write_files(job)?;
                 return script(job).into_running(job, self.layers.clone());
@@ -288,36 +288,36 @@ impl Backend {
             Ok(examined) => examined,
             Err(problem) => return FakeRun::with_start_problem(problem).into_running(job, self.layers.clone()),
         };
-        let mut order = build_order(job, walls, examined, &supervisor.program)?;
+        let mut order = build_order(job, layers, examined, &supervisor.program)?;
         if Keeping::is_possible_for(&order) {
             order.files =
                 job.files.iter().map(|(name, bytes)| (name.clone().into_bytes(), bytes.len() as u64)).collect();
         } else {
             write_files(job)?;
         }
-        let (mut asked, first) = loop {
-            let (mut asked, kept) = match Keeping::from_order(&order) {
+        let (mut spawned, first) = loop {
+            let (mut spawned, kept) = match Keeping::from_order(&order) {
                 Some(kind) => supervisor.request_from_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
-            match asked.receive_first() {
+            match spawned.receive_first() {
                 // The keeper ended, because it received no order for a while.
-                Err(_) if kept => asked.host.kill(),
-                first => break (asked, first),
+                Err(_) if kept => spawned.host.kill(),
+                first => break (spawned, first),
             }
         };
         match first {
             Ok(Event::Ready { session, user }) => {
-                let folder = match order.is_in_memory.then(|| receive_folder(&asked.control)).transpose() {
+                let folder = match order.is_in_memory.then(|| receive_folder(&spawned.control)).transpose() {
                     Ok(folder) => folder.map(OpenFolder::from),
-                    Err(_) => return Err(asked.loss_error()),
+                    Err(_) => return Err(spawned.loss_error()),
                 };
-                let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
-                let supervised = SupervisedRun { host, answers, session, user, order, layers };
+                let (SpawnedSupervisor { host, control, answers }, layers) = (spawned, self.layers.clone());
+                let supervised = SupervisedRun { supervisor: host, answers, session, user, order, layers };
                 Ok(RunningProgram::new(supervised, control, folder))
             }
             Ok(Event::Failed(failure)) => {
-                asked.host.keep_for_reuse(None);
+                spawned.host.keep_for_reuse(None);
                 match failure.errno {
                     // The program's file itself is larger than the memory limit.
                     libc::ENOMEM if failure.stage == wire::EXECUTE_STEP => {
@@ -327,8 +327,8 @@ impl Backend {
                 }
             }
             Ok(Event::Done(_)) | Err(_) => {
-                asked.host.kill();
-                Err(asked.loss_error())
+                spawned.host.kill();
+                Err(spawned.loss_error())
             }
         }
     }
@@ -352,7 +352,7 @@ fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
 /// Returns the order for a job, which a supervisor of the current program receives. All paths in it are absolute.
 fn build_order(
     job: &Job,
-    walls: ActiveLayers,
+    layers: ActiveLayers,
     examined: program::ProgramFacts,
     supervisor: &Path,
 ) -> Result<RunOrder, SandboxError> {
@@ -395,10 +395,10 @@ fn build_order(
             .map(|word| word.as_bytes().to_vec())
             .collect(),
         sanitizers: job.sanitizers,
-        layers: walls,
+        layers,
         limits: job.limits.clone(),
     };
     order.is_in_memory =
-        job.has_folder_in_memory && walls.namespaces && memory_budget::has_memory_for(order.folder_bytes());
+        job.has_folder_in_memory && layers.namespaces && memory_budget::has_memory_for(order.folder_bytes());
     Ok(order)
 }

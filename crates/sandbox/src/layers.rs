@@ -47,7 +47,7 @@ layers! {
     OwnUser "a user per program";
     /// Namespaces hide other processes, the network, and most files.
     Namespaces "namespaces";
-    /// Each run has a control group. In it, the kernel counts what the run uses, and a single command ends all
+    /// Each run has a control group. In it, the kernel counts what the run uses, and a single command kills all
     /// processes.
     ControlGroup "control group";
 }
@@ -157,7 +157,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
             false,
             "use Linux 5.5 or newer; until then a violation is reported without its name, build steps cannot lock \
                 files, \
-             and an ordinary user's cannot set permission bits",
+             and those of an ordinary user cannot set permission bits",
         ),
         new_report(
             Layer::FileRules,
@@ -196,7 +196,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
             layer: Layer::OwnUser,
             active: has_own_user(probe),
             required: probe.root,
-            detail: own_user.clone().unwrap_or_else(|| "every running program has a user of its own".into()),
+            detail: own_user.clone().unwrap_or_else(|| "every running program has its own user".into()),
             remedy: match (probe.root, own_user) {
                 (true, Some(_)) => {
                     Some("grade as an ordinary user, or let root change its user (CAP_SETUID, CAP_SETGID, CAP_CHOWN)")
@@ -216,7 +216,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
         new_report(
             Layer::ControlGroup,
             probe.group.clone(),
-            &match (&probe.group_controls[..], probe.group_ends) {
+            &match (&probe.group_controls[..], probe.group_can_kill) {
                 ([], _) => "a run ends as a whole; no controller for memory or processes is available".to_string(),
                 (controls, true) => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
                 (controls, false) => format!("the kernel limits {}", controls.join(", ")),

@@ -137,7 +137,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<ProgramF
             return Err(StartProblem::NotTheSystems { path: name.escape_default().to_string() });
         }
         if name.starts_with('-') {
-            return Err(missing(&name, "; of the options of env only -S is known here"));
+            return Err(missing(&name, "; the only supported option of env is -S"));
         }
         let place = PROGRAM_FOLDERS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
         found = place.ok_or_else(|| missing(&name, hint))?;

@@ -42,7 +42,7 @@ enum RunState {
 
 #[derive(Debug)]
 pub(super) struct SupervisedRun {
-    pub(super) host: RunSupervisor,
+    pub(super) supervisor: RunSupervisor,
     /// The file from which the supervisor's answers are read.
     pub(super) answers: File,
     pub(super) session: Option<i32>,
@@ -53,15 +53,15 @@ pub(super) struct SupervisedRun {
 
 impl RunningProgram {
     /// Creates the value for a run whose supervisor has reported that it is ready.
-    pub(super) fn new(supervised: SupervisedRun, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
-        let folder = RemainingFolder { in_memory, path: wire::to_path(&supervised.order.folder), _keeper: None };
+    pub(super) fn new(supervised: SupervisedRun, control: UnixStream, memory_folder: Option<OpenFolder>) -> Self {
+        let folder = RemainingFolder { memory_folder, path: wire::to_path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
         Self { state: RunState::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
     }
 
     /// Creates the value for a run in the folder `path` whose outcome is already known.
     pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
-        let folder = RemainingFolder { in_memory: None, path, _keeper: None };
+        let folder = RemainingFolder { memory_folder: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
         Self { state: RunState::Known(Box::new(outcome)), folder, canceller }
     }
@@ -69,7 +69,7 @@ impl RunningProgram {
     /// Returns whether the program works in a copy of its working folder in memory. The folder on disk then does not
     /// change.
     pub fn is_in_memory(&self) -> bool {
-        self.folder.in_memory.is_some()
+        self.folder.memory_folder.is_some()
     }
 
     /// Returns a handle that stops the program. It can be used in other threads, and on Ctrl-C.
@@ -97,8 +97,8 @@ impl RunningProgram {
             RunState::Known(outcome) => (*outcome, None),
             RunState::Taken => unreachable!("`wait` takes the run by value"),
         };
-        let RemainingFolder { in_memory, path, .. } = std::mem::take(&mut self.folder);
-        Ok((outcome, RemainingFolder { in_memory, path, _keeper: keeper }))
+        let RemainingFolder { memory_folder, path, .. } = std::mem::take(&mut self.folder);
+        Ok((outcome, RemainingFolder { memory_folder, path, _keeper: keeper }))
     }
 
     fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<IdleKeeper>), SandboxError> {
@@ -108,8 +108,8 @@ impl RunningProgram {
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
             Err(_) => {
-                let error = supervised.host.loss_error();
-                orphans::end_orphans(supervised.session, supervised.user);
+                let error = supervised.supervisor.loss_error();
+                orphans::kill_orphans(supervised.session, supervised.user);
                 return Err(error);
             }
         };
@@ -118,7 +118,7 @@ impl RunningProgram {
             Event::Failed(failure) => Err(from_setup_failure(failure)),
             Event::Ready { .. } => Err(SandboxError::Lost { how: "it sent an unexpected message".into() }),
         };
-        let keeper = supervised.host.keep_for_reuse(report.as_ref().ok());
+        let keeper = supervised.supervisor.keep_for_reuse(report.as_ref().ok());
         let report = report?;
         if report.survivors > 0 {
             return Err(SandboxError::Survivors { count: report.survivors });
@@ -144,7 +144,7 @@ impl RunningProgram {
 /// changes. When the value is dropped, other runs can use the supervisor.
 #[derive(Debug, Default)]
 pub struct RemainingFolder {
-    in_memory: Option<OpenFolder>,
+    memory_folder: Option<OpenFolder>,
     path: PathBuf,
     // The host is dropped last. Otherwise the pages of a folder in memory would count for the keeper's next run.
     _keeper: Option<IdleKeeper>,
@@ -153,8 +153,8 @@ pub struct RemainingFolder {
 impl RemainingFolder {
     /// Returns the folder, if the program worked in a copy in memory
     /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise the files are in the job's folder on disk.
-    pub fn in_memory(&self) -> Option<&OpenFolder> {
-        self.in_memory.as_ref()
+    pub fn memory_folder(&self) -> Option<&OpenFolder> {
+        self.memory_folder.as_ref()
     }
 
     /// Opens a regular file in the folder, and returns it with its length. The file must have at most `longest` bytes.
@@ -164,7 +164,7 @@ impl RemainingFolder {
     ///
     /// Fails if there is no such regular file.
     pub fn regular_file(&self, name: &str, longest: u64) -> Result<(File, u64), CollectError> {
-        if let Some(folder) = &self.in_memory {
+        if let Some(folder) = &self.memory_folder {
             return folder.regular_file(name, longest);
         }
         let opened = OpenFolder::open(&self.path);

@@ -25,7 +25,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// The supervisor ended without a report.
-    #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were ended")]
+    #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were killed")]
     Lost {
         /// A description of the way in which the supervisor ended.
         how: String,
@@ -60,10 +60,10 @@ pub enum SandboxError {
         /// The path of the program.
         program: String,
     },
-    /// Some processes of the run could not be ended.
-    #[error("{count} processes of the program could not be ended; check this host for processes in state D")]
+    /// Some processes of the run could not be killed.
+    #[error("{count} processes of the program could not be killed; check this host for processes in state D")]
     Survivors {
-        /// The number of processes that could not be ended.
+        /// The number of processes that could not be killed.
         count: u32,
     },
 }

@@ -5,7 +5,7 @@
 //! kernel valid pointers to live values, converts its result into a `Result`, and keeps no pointer. Only [`fork`] has a
 //! precondition, which it checks.
 
-#![expect(unsafe_code, reason = "fork, execve, seccomp and their kin have no safe wrapper among the dependencies")]
+#![expect(unsafe_code, reason = "fork, execve, seccomp and similar calls have no safe wrapper among the dependencies")]
 
 use std::{
     ffi::{CStr, CString},
@@ -218,7 +218,7 @@ pub(super) fn set_file_mask(mask: u32) {
 /// Sends a signal to one process.
 pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     if pid <= 1 {
-        return Err(io::Error::other("the supervisor must signal single processes"));
+        return Err(io::Error::other(format!("refusing to signal {pid}: it is not a single process")));
     }
     // SAFETY: all arguments are integers. The process number is positive, so that no process group is meant.
     check_answer(unsafe { libc::kill(pid, signal) })
@@ -305,7 +305,7 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }))
 }
 
-/// Makes writes beyond the limit of file sizes fail, instead of ending the process.
+/// Makes writes beyond the limit of file sizes fail, instead of killing the process.
 pub(super) fn ignore_file_size_signal() {
     // SAFETY: ignoring a signal needs no function.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };

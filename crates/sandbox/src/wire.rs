@@ -192,8 +192,8 @@ pub(super) struct Probe {
     pub(super) group: Option<String>,
     /// The names of the quantities that the kernel can limit for a control group.
     pub(super) group_controls: Vec<String>,
-    /// Whether all processes in a control group can be ended together.
-    pub(super) group_ends: bool,
+    /// Whether all processes in a control group can be killed together.
+    pub(super) group_can_kill: bool,
 }
 
 /// Writes a message, after its length.

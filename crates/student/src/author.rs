@@ -9,7 +9,7 @@ pub struct Student {
     areas: u64,
     /// Whether one of the mistakes is a slip in a quantity ([`StepMistake::Edit`]).
     pub(super) has_slips: bool,
-    right_approach: bool,
+    uses_right_approach: bool,
 }
 
 impl Student {
@@ -44,7 +44,7 @@ impl Student {
     }
 
     /// Returns whether the student makes no mistake of the catalogue.
-    pub(super) fn makes_none(&self) -> bool {
+    pub(super) fn makes_no_mistake(&self) -> bool {
         self.mistakes[0].is_none()
     }
 
@@ -64,12 +64,12 @@ impl Student {
     /// well, and is independent of the mistake.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
-        Self { right_approach: true, ..self }
+        Self { uses_right_approach: true, ..self }
     }
 
     /// Returns whether the student uses the mathematically right particle-edge approach instead of the supplied one.
     pub fn has_right_approach(&self) -> bool {
-        self.right_approach || self.makes(Mistake::QuinticRightRearranged)
+        self.uses_right_approach || self.makes(Mistake::QuinticRightRearranged)
     }
 }
 

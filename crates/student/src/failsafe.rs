@@ -53,7 +53,7 @@ pub fn move_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State)
 fn is_stopped(world: &World, zone: &Zone) -> bool {
     let student = world.student;
     let fixed = zone_particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
-    let half_plane = zone.half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
+    let half_plane = zone.has_half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
     let fixed = match () {
         () if student.makes(Mistake::FailsafeFixedForgotten) => false,
         () if student.makes(Mistake::FailsafeFirstFixedOnly) => {

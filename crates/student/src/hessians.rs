@@ -21,9 +21,9 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     };
     let makes = |slip: Slip| world.student.makes_slip(whole, slip);
     let sign = if makes(Slip::MatrixSign) { -1.0 } else { 1.0 };
-    let mut matrix = HessianSum { world, size, entries: vec![0.0; size * size], is_of_velocities: false, weight: 1.0 };
-    for (is_of_velocities, term) in [(false, of_x), (true, of_v)] {
-        (matrix.is_of_velocities, matrix.weight) = (is_of_velocities, sign * world.weight(term, 1.0));
+    let mut matrix = HessianSum { world, size, entries: vec![0.0; size * size], uses_velocities: false, weight: 1.0 };
+    for (uses_velocities, term) in [(false, of_x), (true, of_v)] {
+        (matrix.uses_velocities, matrix.weight) = (uses_velocities, sign * world.weight(term, 1.0));
         for force in &world.scene.forces {
             matrix.add_force(force, x, v)?;
         }
@@ -53,7 +53,7 @@ struct HessianSum<'a> {
     size: usize,
     entries: Vec<f64>,
     /// Whether derivatives by velocities are added instead of those by positions.
-    is_of_velocities: bool,
+    uses_velocities: bool,
     weight: f64,
 }
 
@@ -83,7 +83,7 @@ impl HessianSum<'_> {
                     self.add_drag(particle, coefficient);
                 }
             }
-            Force::Vortex { .. } if !self.is_of_velocities => return Err(StepFailure::VortexHessian),
+            Force::Vortex { .. } if !self.uses_velocities => return Err(StepFailure::VortexHessian),
             Force::Gravitation { .. } | Force::Drag { .. } | Force::Vortex { .. } => {}
             Force::SimpleGravity { .. } | Force::Constant { .. } => {}
         }
@@ -91,9 +91,9 @@ impl HessianSum<'_> {
     }
 
     /// Returns whether this student's program adds a derivative to the current matrix.
-    fn includes_derivative(&self, term: Term, is_of_velocities: bool) -> bool {
+    fn includes_derivative(&self, term: Term, uses_velocities: bool) -> bool {
         let is_other = self.world.student.makes_slip(term, Slip::OtherMatrix);
-        self.is_of_velocities == (is_of_velocities != is_other)
+        self.uses_velocities == (uses_velocities != is_other)
     }
 
     /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it off the diagonal.

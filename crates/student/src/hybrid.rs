@@ -85,7 +85,7 @@ fn respond_geometrically(
         }
         let mut next: Vec<Zone> =
             if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
-        next.extend(found.filter(|zone| !(zone.half_plane && student.makes(Mistake::GeometricHalfPlanesDropped))));
+        next.extend(found.filter(|zone| !(zone.has_half_plane && student.makes(Mistake::GeometricHalfPlanesDropped))));
         let next = zones::merge(student, next);
         let same = zones::has_same_zones(student, &zones, &next);
         if same || round > MAX_ROUNDS {
@@ -117,7 +117,7 @@ fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State)
         Some(Mistake::GeometricLastZoneSkipped) => chosen.truncate(last),
         _ => {}
     }
-    let shared = world.student.makes(Mistake::ZonesFlagShared) && zones.iter().any(|zone| zone.half_plane);
-    let flagged = chosen.into_iter().map(|zone| Zone { half_plane: zone.half_plane || shared, ..zone.clone() });
+    let shared = world.student.makes(Mistake::ZonesFlagShared) && zones.iter().any(|zone| zone.has_half_plane);
+    let flagged = chosen.into_iter().map(|zone| Zone { has_half_plane: zone.has_half_plane || shared, ..zone.clone() });
     flagged.for_each(|zone| failsafe::move_zone(world, &zone, q_start, state));
 }

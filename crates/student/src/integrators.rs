@@ -20,7 +20,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
     if whole.is_some_and(|whole| world.student.makes_slip(whole, Slip::Missing)) {
         return Ok(());
     }
-    let before = (!world.student.makes_none()).then(|| state.clone());
+    let before = (!world.student.makes_no_mistake()).then(|| state.clone());
     match world.scene.integrator {
         Integrator::ExplicitEuler => {
             step_explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
@@ -144,7 +144,7 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
 fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
-    let most = if world.student.makes_none() { MAX_NEWTON_ITERATIONS } else { MAX_MISTAKEN_NEWTON_ITERATIONS };
+    let most = if world.student.makes_no_mistake() { MAX_NEWTON_ITERATIONS } else { MAX_MISTAKEN_NEWTON_ITERATIONS };
     let (mut enough, mut iterations) = (1e-9, u32::MAX);
     for slip in world.student.slips(Term::Newton) {
         match slip {

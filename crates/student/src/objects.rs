@@ -45,7 +45,7 @@ impl Object {
 /// A contact that detection found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The shortest vector from the particle to the object at the time of impact, not normalized.
+    /// The particle and the object.
     pub pair: Pair,
     /// The shortest vector from the particle to the object at the time of impact, not normalized.
     pub n: Vec2,
@@ -59,5 +59,5 @@ pub struct Zone {
     /// The particles' indices.
     pub particles: BTreeSet<usize>,
     /// Whether a particle of the zone hits a half-plane.
-    pub half_plane: bool,
+    pub has_half_plane: bool,
 }

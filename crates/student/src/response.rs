@@ -39,7 +39,7 @@ fn restitution(world: &World) -> f64 {
 /// `predicted.x`, which may be an earlier state than `result`.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
     let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
-    let mut response = PairResponse { world, q_start, predicted, result, u, bounce: restitution_factor(world) };
+    let mut response = PairResponse { world, q_start, predicted, result, u, factor: restitution_factor(world) };
     let particle = contact.pair.particle;
     match contact.pair.object {
         Object::Particle(other) => response.particle_particle(particle, other),
@@ -59,7 +59,7 @@ struct PairResponse<'a> {
     /// The unit contact vector.
     u: Vec2,
     /// The factor `(1 + COR) / 2`, doubled.
-    bounce: f64,
+    factor: f64,
 }
 
 impl PairResponse<'_> {
@@ -97,7 +97,7 @@ impl PairResponse<'_> {
         let student = self.world.student;
         let (m1, m2) = response_masses(student, self.world.collision_mass(one), self.world.collision_mass(two));
         let closing = self.velocity(two) - self.velocity(one);
-        let impulse = self.bounce * student.dot(closing, self.u);
+        let impulse = self.factor * student.dot(closing, self.u);
         let (mut inertia1, mut inertia2) = (1.0 + m1 / m2, m2 / m1 + 1.0);
         if student.makes(Mistake::ResponseInverseMasses) {
             let (w1, w2) = (1.0 / m1, 1.0 / m2);
@@ -126,7 +126,7 @@ impl PairResponse<'_> {
         } else {
             student.add_scaled(v2, alpha, v3 - v2)
         };
-        let impulse = self.bounce * student.dot(edge_velocity - v1, self.u);
+        let impulse = self.factor * student.dot(edge_velocity - v1, self.u);
         let [m1, m2, m3] = [one, two, three].map(|particle| self.world.collision_mass(particle));
         let (low, high) = (beta * beta, alpha * alpha);
         let mut inertia1 = 1.0 + low * m1 / m2 + high * m1 / m3;
@@ -164,11 +164,11 @@ impl PairResponse<'_> {
             sign = 0.5;
         }
         if !student.makes(Mistake::ResponsePositionsOnly) {
-            let change = self.bounce * speed * self.u;
+            let change = self.factor * speed * self.u;
             subtract(&mut self.result.v, one, sign * change);
         }
         if !student.makes(Mistake::ResponseVelocitiesOnly) {
-            let moved = if student.makes(Mistake::ResponsePositionNoStep) { self.bounce } else { h * self.bounce };
+            let moved = if student.makes(Mistake::ResponsePositionNoStep) { self.factor } else { h * self.factor };
             let change = moved * speed * self.u;
             subtract(&mut self.result.x, one, sign * change);
         }

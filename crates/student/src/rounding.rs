@@ -5,7 +5,7 @@ use super::{Mistake, author::Student};
 
 /// Returns a number rounded to single precision.
 pub fn round_to_f32(value: f64) -> f64 {
-    #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
+    #[expect(clippy::cast_possible_truncation, reason = "the mistake is to use a float instead of a double")]
     let single = value as f32;
     f64::from(single)
 }
@@ -14,7 +14,7 @@ impl Student {
     /// Returns `addend + a * b`.
     pub fn add_product(self, addend: f64, a: f64, b: f64) -> f64 {
         if self.makes(Mistake::FusedArithmetic) {
-            #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
+            #[expect(clippy::disallowed_methods, reason = "a student's compiler may fuse operations")]
             return a.mul_add(b, addend);
         }
         addend + a * b

@@ -34,7 +34,7 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
         Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
     }
     half_plane ^= student.makes(Mistake::ZonesFlagInverted) && !matches!(contact.pair.object, Object::Edge(_));
-    Zone { particles, half_plane }
+    Zone { particles, has_half_plane: half_plane }
 }
 
 /// Joins zones until no two share a particle.
@@ -76,11 +76,11 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
 }
 
 fn join(student: Student, zone: &mut Zone, other: Zone) {
-    zone.half_plane = match student.mistake_in(MODULE_AREAS) {
-        Some(Mistake::ZonesFlagLost) => zone.half_plane,
-        Some(Mistake::ZonesFlagOverwritten) => other.half_plane,
-        Some(Mistake::ZonesFlagBoth) => zone.half_plane && other.half_plane,
-        _ => zone.half_plane || other.half_plane,
+    zone.has_half_plane = match student.mistake_in(MODULE_AREAS) {
+        Some(Mistake::ZonesFlagLost) => zone.has_half_plane,
+        Some(Mistake::ZonesFlagOverwritten) => other.has_half_plane,
+        Some(Mistake::ZonesFlagBoth) => zone.has_half_plane && other.has_half_plane,
+        _ => zone.has_half_plane || other.has_half_plane,
     };
     if student.makes(Mistake::ZonesJoinOneParticle) {
         zone.particles.extend(other.particles.last());
@@ -113,9 +113,9 @@ fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
         for &particle in &zone.particles {
             let set = sets
                 .entry(find_root(&parents, particle))
-                .or_insert_with(|| Zone { particles: BTreeSet::new(), half_plane: false });
+                .or_insert_with(|| Zone { particles: BTreeSet::new(), has_half_plane: false });
             set.particles.insert(particle);
-            set.half_plane |= zone.half_plane;
+            set.has_half_plane |= zone.has_half_plane;
         }
     }
     sets.into_values().collect()
@@ -134,7 +134,7 @@ pub fn has_same_zones(student: Student, old: &[Zone], new: &[Zone]) -> bool {
         Some(Mistake::ZonesEqualByCount) => true,
         Some(Mistake::ZonesEqualNoFlag) => one.particles == other.particles,
         Some(Mistake::ZonesEqualBySize) => one.particles.len() == other.particles.len(),
-        _ => one.particles == other.particles && one.half_plane == other.half_plane,
+        _ => one.particles == other.particles && one.has_half_plane == other.has_half_plane,
     };
     old.len() == new.len() && new.iter().all(|zone| old.iter().any(|other| same(zone, other)))
 }

@@ -26,8 +26,8 @@ Example:
   fosssim-oracle render scenes/creative.xml --format png --output pngs --size 1280x720
 
 Without a trace the reference's own run is drawn. Bodies have the scene's colors, and the scene's viewport is shown; \
-without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes \
-them, or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
+without one the view shows the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes \
+them, or SVG files as its -m does. Films of more than 1500 pictures skip steps unless --every is given.")]
 pub(in crate::cli) struct RenderArguments {
     /// The scene, a file or asset:Group/name.
     pub(in crate::cli) scene: PathBuf,
@@ -62,9 +62,9 @@ pub(in crate::cli) struct RenderArguments {
 /// The format of the report on a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum DetectFormat {
-    /// Text for people.
+    /// Readable text.
     Text,
-    /// One JSON object, for programs.
+    /// One JSON object.
     Json,
     /// A picture like the assignment's figure 2: the polynomials, where each is positive, and where all are.
     Svg,

@@ -39,14 +39,14 @@ Example:
   fosssim-oracle grade submissions/ --output grades --compare grades
 
 A folder holds one submission per entry: a program, an archive (.zip, .tar.gz, .tar), or a folder with a program of \
-the name that --program gives. A folder that holds such a program itself is one submission, and with --single it is \
-one in any case. When the suite has a [build] table, folders and archives are built first. A program runs without the \
-files next to it.
+the name in --program. A folder that contains such a program itself is one submission; with --single, every folder is \
+one. When the suite has a [build] table, folders and archives are built first. A program runs without the files next \
+to it.
 
-With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by \
-default.) An interrupted grading continues where it stopped. A scene is run again only if the program, the scene or \
-the rules changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, \
-scenes.csv, class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part \
+With --output, results are stored in the folder immediately. (For several submissions, the default folder is \
+fosssim-grades.) An interrupted grading continues where it stopped. A scene is run again only if the program, the \
+scene or the rules changed. The folder gets index.html (a class) or report.html to look at, grades.csv, \
+grades.jsonl, scenes.csv, class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part \
 are not a grade.")]
 pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
@@ -178,7 +178,7 @@ Example:
   fosssim-oracle grade submissions/ --shard 2/2 --output grades    # on another
   fosssim-oracle merge grades
 
-All shards of one grading must be there, each once. The exit code is that of the grading.")]
+Each shard of the grading must exist exactly once. The exit code is that of the grading.")]
 pub(in crate::cli) struct MergeArguments {
     /// Folders of shards, or folders that contain such folders.
     #[arg(required = true)]

@@ -108,9 +108,9 @@ fn to_step(word: &str) -> Result<u32, &'static str> {
 /// The format of the report on a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum CheckFormat {
-    /// Text for people.
+    /// Readable text.
     Text,
-    /// One JSON object, for programs.
+    /// One JSON object.
     Json,
     /// A page for browsers: one file with pictures and a viewer of both motions.
     Html,
@@ -121,9 +121,9 @@ pub(super) enum CheckFormat {
 /// The format of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ExplainFormat {
-    /// Text for people.
+    /// Readable text.
     Text,
-    /// One JSON object, for programs.
+    /// One JSON object.
     Json,
     /// A page for browsers: one file with pictures and a viewer of both motions.
     Html,
@@ -211,7 +211,7 @@ Example:
   fosssim-oracle explain --program ./FOSSSim scenes/test00.xml
 
 With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
-The exit code is 0 when the fair rules accept everything, else 1.")]
+The exit code is 0 if the fair rules accept everything, otherwise 1.")]
 pub(super) struct ExplainArguments {
     /// The scene and the trace; with --program, scenes to run in addition to the built-in ones.
     #[arg(value_name = "SCENE TRACE")]
@@ -254,7 +254,7 @@ Example:
   fosssim-oracle shrink ./FOSSSim --suite t2m1 --format html > small.html
 
 The program runs in the sandbox. Without a scene there is one smallest scene for each cause; further ones go to \
-small.2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
+small.2.xml and so on. The exit code is 0 if nothing is wrong, otherwise 1.")]
 pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,

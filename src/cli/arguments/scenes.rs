@@ -45,7 +45,7 @@ Example:
   fosssim-oracle scene export --output scenes
   fosssim-oracle scene export 'HolisticTests/*' --output scenes
 
-A file that holds something else is left alone and named, unless --force is given.")]
+A file with other contents is not replaced, but reported, unless --force is given.")]
 pub(in crate::cli) struct SceneExportArguments {
     /// Write only scenes with these names, such as 'GeometricTests/*'. By default all are written.
     #[arg(value_name = "GLOB")]

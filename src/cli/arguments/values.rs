@@ -8,15 +8,15 @@ use std::str::FromStr;
 
 /// Parses a whole number that is at least one.
 pub(in crate::cli) fn parse_positive<N: FromStr>(word: &str) -> Result<N, &'static str> {
-    word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
+    word.trim().parse().map_err(|_| "the value must be a whole number of at least 1")
 }
 
 /// The format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum TextOrJson {
-    /// Text for people.
+    /// Readable text.
     Text,
-    /// One JSON object, for programs.
+    /// One JSON object.
     Json,
 }
 

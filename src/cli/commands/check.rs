@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         steps: &wrong,
         audit: arguments.audit,
         tables: arguments.tables,
-        looks_like: trace.looks_like,
+        other_file_kind: trace.probable_kind,
     };
     let accepted = check.is_accepted();
     let is_states_only = |data: std::fs::Metadata| Layout::for_scene(&scene.scene).is_states_only(data.len());
@@ -130,7 +130,7 @@ fn collect_wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result
     } else if arguments.step.is_empty() {
         StepChoice::None
     } else {
-        StepChoice::These(arguments.step.clone())
+        StepChoice::Selected(arguments.step.clone())
     }))
 }
 

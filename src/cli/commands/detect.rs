@@ -8,7 +8,7 @@ use crate::{
         output::Output,
     },
     evidence::{self, CallLog, InspectedPair},
-    judge::{overlap::OverlapStudy, study::Study},
+    judge::{overlap::OverlapCheck, study::Study},
     render::{detection, plot::PlotTarget},
     report::{
         describe::no_result,
@@ -98,7 +98,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         None => (simulate_to(&scene, step)?, None),
     };
     if matches!(scene.scene.collision, Collision::Simple { .. }) {
-        let found = OverlapStudy::for_pair(&scene.scene, step, &before, pair);
+        let found = OverlapCheck::for_pair(&scene.scene, step, &before, pair);
         let study =
             found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("detection never tests this pair")?;
         let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));

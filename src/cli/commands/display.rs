@@ -47,7 +47,7 @@ impl<'a> LiveDisplay<'a> {
                     bar.set_position(u64::from(step));
                 }
             }
-            Event::SceneDone { submission, scene, cached, .. } => {
+            Event::SceneDone { submission, scene, is_reused: cached, .. } => {
                 if let Some(bars) = &mut self.bars {
                     if let Some(bar) = bars.running.remove(&(submission, scene)) {
                         bar.finish_and_clear();
@@ -59,7 +59,7 @@ impl<'a> LiveDisplay<'a> {
                     }
                 }
             }
-            Event::Graded { grade, .. } => {
+            Event::GradeDone { grade, .. } => {
                 self.graded += 1;
                 if self.submissions.len() == 1 {
                     return;

@@ -65,7 +65,7 @@ fn drawing(arguments: &ExplainArguments) -> Drawing {
 fn explain_trace(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Result<(Case, Option<Card>)> {
     let scene = input::read_scene(scene)?;
     let mut trace = input::open_trace(trace)?;
-    if let Some(kind) = trace.looks_like {
+    if let Some(kind) = trace.probable_kind {
         bail!("{} is not a trace: it {kind}", trace.name);
     }
     let (case, card, _) =

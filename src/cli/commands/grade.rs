@@ -8,7 +8,7 @@ use super::{
     last_run::LastRun,
     pages::{self, Pages},
     probes::Drawing,
-    results::{Report, Results, find_wanted_pages, read_reports, reject_several},
+    results::{Report, Results, find_requested_pages, read_reports, reject_several},
     shard::Sharding,
     shrink,
     submissions::{FoundSubmissions, Search},
@@ -18,7 +18,7 @@ use crate::{
     cli::{
         arguments::grade::GradeArguments as Arguments,
         console, exit,
-        interrupt::{cancellation_by_signals, show_activity},
+        interrupt::{cancellation_by_signals, record_activity},
         output,
         selection::Selection,
     },
@@ -136,7 +136,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
-    let pages = find_wanted_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
+    let pages = find_requested_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
         GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over, times };
@@ -266,7 +266,7 @@ impl GradingSession<'_> {
             trace_file: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.new_cards(&draw)),
             smallest: if self.arguments.smallest { Some(&smallest) } else { None },
-            finish: Some(&finish),
+            receive_grade: Some(&finish),
             timings: self.arguments.timings.then_some(self.times),
             reference: reference.as_deref(),
         };
@@ -274,7 +274,7 @@ impl GradingSession<'_> {
         let mut counter =
             self.arguments.progress.as_deref().map(|file| self.new_counter(file, submissions)).transpose()?;
         let mut on_event = |event: batch::Event<'_>| {
-            show_activity();
+            record_activity();
             display.show_event(&event);
             if let Some(counter) = &mut counter {
                 counter.count_event(&event);

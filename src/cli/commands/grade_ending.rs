@@ -10,7 +10,7 @@ pub(super) const MAX_HARDEST: usize = 5;
 
 /// Returns the exit code of a grading that was not interrupted.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
-    if grades.iter().any(Grade::is_our_fault) {
+    if grades.iter().any(Grade::is_grader_fault) {
         exit::FAULT
     } else if grades.iter().all(|grade| grade.verdict.is_accepted()) {
         exit::ACCEPTED

@@ -97,7 +97,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             trace_file: None,
             cards: Some(pages.new_cards(&draw)),
             smallest: None,
-            finish: None,
+            receive_grade: None,
             timings: None,
             reference: None,
         };
@@ -140,7 +140,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
         let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
-        let unknown = || format!("doctor shows no layer {name}{}", suggestions::suggest(name, names));
+        let unknown = || format!("`doctor` lists no layer {name}{}", suggestions::suggest(name, names));
         backend = backend.without_layer(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
@@ -159,18 +159,18 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let mut text = String::new();
     for promise in &table.promises {
         let (state, why) = match &promise.state {
-            selftest::PromiseState::Held => ("kept", String::new()),
+            selftest::PromiseState::Kept => ("kept", String::new()),
             selftest::PromiseState::Broken(how) => ("BROKEN", format!(" [{how}]")),
             selftest::PromiseState::NotTested(why) => ("not tested", format!(" [{why}]")),
         };
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }
     let broken = table.broken().count();
-    let held = format_count(table.count_held() as u64, "promise");
-    let untested = table.promises.len() - table.count_held() - broken;
+    let held = format_count(table.count_kept() as u64, "promise");
+    let untested = table.promises.len() - table.count_kept() - broken;
     let _ = writeln!(text, "\n{held} kept, {broken} broken, {untested} not tested here");
     console::report(&text)?;
-    Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if broken == 0 && table.count_kept() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Returns the sandbox. If required layers are missing, the error names them.

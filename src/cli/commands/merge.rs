@@ -62,7 +62,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
-    Grade::note_same_programs(&mut grades);
+    Grade::record_same_programs(&mut grades);
     grade::add_warnings(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
@@ -87,7 +87,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
 fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, ShardResult)>> {
     let mut parts: Vec<(PathBuf, ShardResult)> = Vec::new();
     for folder in folders {
-        let listing = fs::read_dir(folder).with_context(|| format!("no folder {}", folder.display()))?;
+        let listing = fs::read_dir(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
         let mut places: Vec<PathBuf> =
             listing.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
         places.sort();
@@ -110,7 +110,7 @@ fn require_complete<'a>(
     parts: &'a [(PathBuf, ShardResult)],
     arguments: &MergeArguments,
 ) -> Result<(&'a ShardResult, PathBuf)> {
-    let (place, first) = parts.first().context("there is no shard")?;
+    let (place, first) = parts.first().context("the folders contain no shard")?;
     for (other, part) in parts {
         if let Some(what) = first.common.difference(&part.common) {
             bail!("{} and {} belong to different gradings: {what}", place.display(), other.display());
@@ -189,7 +189,7 @@ fn copy(from: &Folder, to: &FilePlace, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::print_error(format!("skipped {}: it is not a file\n", input::printable_name(&source)));
+                console::print_error(format!("skipped {}, which is not a file\n", input::printable_name(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }
@@ -200,7 +200,7 @@ fn copy(from: &Folder, to: &FilePlace, depth: usize) -> Result<()> {
 fn copy_file(file: File, target: &FilePlace) -> io::Result<()> {
     let length = file.metadata()?.len();
     if length > MAX_FILE_BYTES {
-        return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
+        return Err(io::Error::other(format!("the file has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
     // Only the length that was read before is copied, even if the file grows.
     output::copy_below(target, &mut file.take(length))

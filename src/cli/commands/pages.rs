@@ -163,7 +163,7 @@ pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: us
         steps: &steps,
         audit: false,
         tables: false,
-        looks_like: None,
+        other_file_kind: None,
     };
     let has_trace = trace_name.is_some();
     let case = Case { check, scene, evidence: Some(&evidence), mistake_run: what_if.as_ref(), hints, has_trace };

@@ -22,7 +22,7 @@ use crate::{
         Cancellation, Folders, Runner, SceneTask,
         cards::JudgedTrace,
         config::{Hints, RunLimits},
-        failure_cause::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate_failure},
+        failure_cause::{FailureKind, FeatureIndex, Features, LocatedFailure, TriedScene, locate_failure},
         milestone,
         plan::{self, Plan},
         smallest_scene::shorten_limits,
@@ -40,7 +40,7 @@ use std::{
 /// The limits of processor time and wall time on scenes for which a right program needs some milliseconds.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The maximum number of runs that are ended at a limit. After that many, no further scenes are run.
+/// The maximum number of runs that are killed at a limit. After that many, no further scenes are run.
 const MAX_STOPPED: usize = 4;
 
 /// The level of detail on cards, and whether pictures are drawn.
@@ -179,7 +179,7 @@ impl ProgramUnderTest {
         if left_out > 0 {
             let scenes = format_count(left_out as u64, "scene");
             console::print_remark(format!(
-                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more; look for a \
+                "the program exceeded its limits on {stopped} scenes, so it was not run on {scenes} others; look for a \
                  loop that does not end\n"
             ));
         }
@@ -311,13 +311,13 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
     }
-    let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::for_scene(&task.scene)).collect();
+    let contents: Vec<Features> = tasks.iter().map(|task| FeatureIndex::for_scene(&task.scene)).collect();
     let tried = tasks.iter().zip(&contents).zip(&ends);
     let tried = tried.map(|((task, contents), &(failing, steps))| TriedScene {
         scene: &task.name,
         failure: failing,
         steps,
-        contents,
+        features: contents,
     });
     locate_failure(&tried.collect::<Vec<_>>())
 }

@@ -82,7 +82,7 @@ pub(super) fn reject_several(reports: &[Report], submissions: usize, of_html: &s
 /// # Errors
 ///
 /// Fails if their folder can't be created.
-pub(super) fn find_wanted_pages(
+pub(super) fn find_requested_pages(
     arguments: &Arguments,
     folder: Option<&Path>,
     is_class: bool,

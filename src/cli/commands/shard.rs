@@ -99,14 +99,14 @@ impl ShardResult {
     fn check(&self) -> Result<()> {
         let common = &self.common;
         if common.schema != SCHEMA {
-            bail!("it has schema {}, but this program reads {SCHEMA}", common.schema);
+            bail!("the file has schema {}, but this program reads {SCHEMA}", common.schema);
         }
         if !(1..=MAX_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
             bail!("there is no shard {} of {}; there are at most {MAX_SHARDS}", self.number, common.total);
         }
         let own = select_own(self.number, common.total, &common.submissions);
         if !own.eq(self.grades.iter().map(|grade| &grade.submission)) {
-            bail!("it has grades of other submissions");
+            bail!("the shard has grades of other submissions");
         }
         for grade in &self.grades {
             if let Some(what) = score::find_contradiction(grade) {
@@ -130,7 +130,7 @@ pub(super) struct Sharding {
     /// The folder in which the shard's results are stored.
     pub(super) folder: PathBuf,
     /// The path of the shard's file. No link on it is followed.
-    begin_mark: FilePlace,
+    shard_file: FilePlace,
 }
 
 impl Sharding {
@@ -152,7 +152,7 @@ impl Sharding {
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
         let begun = FilePlace::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
-        Self { shard, common, folder: begun.path(), begin_mark: begun }
+        Self { shard, common, folder: begun.path(), shard_file: begun }
     }
 
     /// Returns the submissions that belong to the shard.
@@ -167,7 +167,7 @@ impl Sharding {
     ///
     /// Fails if the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
-        self.begin_mark.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
+        self.shard_file.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
         let place = FilePlace::new(&self.folder, SHARD_FILE);
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }

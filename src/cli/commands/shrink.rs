@@ -173,7 +173,7 @@ fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let outcome = &replay::judge(scene, &small.observation.trace[..], &options, &mut steps);
     let (audit, tables, looks_like, rules, steps) = (false, false, None, Rules::Fair, &steps);
     let (scene, trace, explanations) = ("small.xml", "small.bin", &[][..]);
-    let check = Check { scene, trace, outcome, explanations, rules, steps, audit, tables, looks_like };
+    let check = Check { scene, trace, outcome, explanations, rules, steps, audit, tables, other_file_kind: looks_like };
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
     (check.steps_text(Style::Plain), findings.and_then(|findings| findings.first_divergence))
 }

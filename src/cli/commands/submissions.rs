@@ -22,7 +22,7 @@ const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
 /// The reason why a folder with results is not a submission.
-const RESULT_FOLDER_REASON: &str = "it contains the results of a grading";
+const RESULT_FOLDER_REASON: &str = "the folder contains the results of a grading";
 
 /// The maximum number of entries in a class's folder.
 const MAX_ENTRIES: usize = 100_000;
@@ -142,10 +142,10 @@ impl<'a> Search<'a> {
             let why = match fs::symlink_metadata(path) {
                 _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULT_FOLDER_REASON.to_owned(),
                 _ if path.file_name().is_some_and(fosssim_intake::is_system_file) => {
-                    "it is from a file manager or a build tool".to_owned()
+                    "a file manager or a build tool created it".to_owned()
                 }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
-                    "its name begins with a dot; name it to grade it".to_owned()
+                    "the name begins with a dot; name the entry to grade it".to_owned()
                 }
                 Ok(data) if data.is_dir() && self.is_results(path) => RESULT_FOLDER_REASON.to_owned(),
                 Ok(data) if data.is_dir() => {
@@ -153,7 +153,7 @@ impl<'a> Search<'a> {
                     continue;
                 }
                 Ok(data) if data.is_symlink() => {
-                    "it is a link, which may lead to another's submission; name it to grade it".to_owned()
+                    "this is a link, which may lead to another student's submission; name it to grade it".to_owned()
                 }
                 Ok(data) if data.is_file() => match rejection_reason(folder, path, &data) {
                     Some(why) => why,
@@ -162,7 +162,7 @@ impl<'a> Search<'a> {
                         continue;
                     }
                 },
-                Ok(_) => "it is neither a file nor a folder".to_owned(),
+                Ok(_) => "this is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
             skip_entry(passed_over, path, &why);
@@ -213,7 +213,7 @@ fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<S
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::describe(&start);
-            Some(format!("it is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN_EXTENSIONS))
+            Some(format!("this is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN_EXTENSIONS))
         }
     }
 }
@@ -309,7 +309,7 @@ fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<ProgramFil
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];
         let is_owned = same.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
-        ProgramFile { identity, is_shared: same.len() > 1, is_anothers: is_owned && is_owner != Some(true) }
+        ProgramFile { identity, is_shared: same.len() > 1, has_other_owner: is_owned && is_owner != Some(true) }
     };
     files.iter().map(|file| file.map(of)).collect()
 }

@@ -1,4 +1,5 @@
-//! The text that `suite check` prints: what a suite contains, and what to know before grading. Also the list of suites.
+//! The text that `suite check` prints: what a suite contains, and what to know before grading. The module also renders
+//! the list of suites.
 use super::visible_mistakes::{MAX_LISTED_SCENES, VisibleMistakes};
 use crate::{
     judge::{PairText, PassText, Rules, fair::Borderline},
@@ -19,8 +20,8 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene, and the decisions in it that round-off may change. If it cannot be simulated to its end, the reason
-/// instead.
+/// A scene, and the decisions in it that round-off may change. If the scene cannot be simulated to its end, the second
+/// part is the reason.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
 /// The maximum number of decisions that are listed for a scene.
@@ -54,7 +55,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         0 => String::new(),
         notes => format!("; {} above", format_count(notes as u64, "note")),
     };
-    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(TextStyle::Good, "The suite is valid"), describe_size(plan));
+    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(TextStyle::Right, "The suite is valid"), describe_size(plan));
     text
 }
 

@@ -20,7 +20,7 @@ pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
     trace.ensure_not_failed()?;
     let json = || report::info_json(&scene.name, &trace.name, &summary);
     console::show(arguments.format, || summary.to_string(), json)?;
-    Ok(if summary.trace.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if summary.trace.stop_error.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Shows one step of a trace.

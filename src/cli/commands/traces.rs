@@ -4,7 +4,7 @@ use super::{
     earlier_grades,
     grade_ending::{MAX_HARDEST, exit_code, text, text_detail},
     pages::{self, Pages},
-    results::{Report, Results, find_wanted_pages, reject_several},
+    results::{Report, Results, find_requested_pages, reject_several},
     submissions::distinct_names,
 };
 use crate::{
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     if let Some(output) = folder {
         Folder::create(output).with_context(|| format!("cannot make {}", output.display()))?;
     }
-    let pages = find_wanted_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
+    let pages = find_requested_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
     let named = paths.iter().zip(distinct_names(&paths));
     let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();

@@ -54,7 +54,7 @@ fn suggest_asset(name: &Path, error: io::Error) -> anyhow::Error {
 pub(super) fn open(name: &Path) -> Result<(File, Metadata)> {
     let (file, metadata) = open_for_reading(name).map_err(|error| suggest_asset(name, error))?;
     if metadata.is_dir() {
-        bail!("it is a directory; name a file inside");
+        bail!("this is a folder; name a file in it");
     }
     Ok((file, metadata))
 }

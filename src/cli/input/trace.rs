@@ -24,7 +24,7 @@ pub(in crate::cli) struct TraceInput {
     /// The identity of the trace's file; `None` if it is not a file.
     pub(in crate::cli) identity: Option<Identity>,
     /// The kind of file that it probably is, if it can't be a trace.
-    pub(in crate::cli) looks_like: Option<&'static str>,
+    pub(in crate::cli) probable_kind: Option<&'static str>,
     failure: Failure,
 }
 
@@ -103,7 +103,7 @@ pub(in crate::cli) fn open_trace(name: &Path) -> Result<TraceInput> {
     let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { detect_file_kind(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
-    Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
+    Ok(TraceInput { name: shown, reader, identity, probable_kind: looks_like, failure })
 }
 
 /// Returns whether a file is a scene, according to its name and its first bytes.
@@ -160,7 +160,7 @@ fn open_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) 
         return Ok(Box::new(UnpackedReader { decoder, format: "gzip", failure: failure.clone() }));
     }
     if must {
-        bail!("it is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
+        bail!("the file is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
     }
     Ok(Box::new(Cursor::new(start).chain(reader)))
 }
@@ -209,7 +209,7 @@ impl<R: Read> Read for UnpackedReader<R> {
             let text = if error.kind() == io::ErrorKind::UnexpectedEof {
                 format!("the {} data is cut short; copy it again", self.format)
             } else if error.to_string().contains("too much memory") {
-                "its zstd window is larger than 8 MiB; compress it again without --long or --ultra".to_owned()
+                "the file's zstd window is larger than 8 MiB; compress it again without --long or --ultra".to_owned()
             } else {
                 format!("the {} data is damaged; copy it again", self.format)
             };

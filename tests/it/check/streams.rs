@@ -17,7 +17,7 @@ fn a_pipe_that_nobody_writes_to_is_refused() {
     assert!(run.err().contains("nothing wrote to the pipe"), "{}", run.err());
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", "pipe"]);
     assert_eq!(run.code, Some(2));
-    assert!(run.err().contains("it is a pipe, socket or block device"), "{}", run.err());
+    assert!(run.err().contains("this is a pipe, socket or block device"), "{}", run.err());
 }
 
 #[test]
@@ -78,7 +78,7 @@ fn compressed_traces_are_unpacked() {
         (
             "wide.zst",
             wide.finish().unwrap(),
-            "its zstd window is larger than 8 MiB; compress it again without --long or --ultra",
+            "the file's zstd window is larger than 8 MiB; compress it again without --long or --ultra",
         ),
     ] {
         workspace.write(name, bytes);
@@ -92,7 +92,7 @@ fn compressed_traces_are_unpacked() {
     workspace.write("plain.zst", workspace.read("trace.bin"));
     let plain = workspace.run(["check", "scene.xml", "plain.zst"]);
     assert_eq!(plain.code, Some(2));
-    assert!(plain.err().contains("it is not zstd data"), "{}", plain.err());
+    assert!(plain.err().contains("the file is not zstd data"), "{}", plain.err());
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn the_report_goes_where_it_is_asked_to_go() {
         let before = workspace.read(input);
         let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", input]);
         assert_eq!(run.code, Some(2));
-        assert!(run.err().contains("it is also an input"), "{}", run.err());
+        assert!(run.err().contains("this is also an input"), "{}", run.err());
         assert_eq!(workspace.read(input), before);
     }
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--output", "no/such/folder"]);

@@ -29,7 +29,7 @@ fn what_can_not_be_run_is_explained() {
     for (words, arguments) in [
         ("no submission at missing", vec!["grade", "missing"]),
         ("contains no submission", vec!["grade", "empty"]),
-        ("no suite t9m9: it is neither a file nor one of", vec!["grade", "text", "--suite", "t9m9"]),
+        ("there is no suite t9m9: it is neither a file nor one of", vec!["grade", "text", "--suite", "t9m9"]),
         ("no suite nowhere.toml", vec!["grade", "text", "--suite", "nowhere.toml"]),
         ("did you mean t2m2?", vec!["grade", "text", "--suite", "tm2m2"]),
         ("did you mean t1m3?", vec!["suite", "init", "t1m3x"]),

@@ -92,9 +92,9 @@ fn names_of_files_give_the_terminal_no_orders() {
 fn counts_and_scenes_that_make_no_sense_are_told_in_plain_words() {
     let workspace = Workspace::with_trace(DRIFT);
     for (words, says) in [
-        (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "it must be a whole number, 1 or more"),
-        (&["render", "scene.xml", "--output", "x.gif", "--every", "0"], "it must be a whole number, 1 or more"),
-        (&["grade", "x", "--jobs", "many"], "it must be a whole number, 1 or more"),
+        (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "the value must be a whole number of at least 1"),
+        (&["render", "scene.xml", "--output", "x.gif", "--every", "0"], "whole number of at least 1"),
+        (&["grade", "x", "--jobs", "many"], "the value must be a whole number of at least 1"),
         (&["check", "-", "trace.bin"], "a scene is read from a file"),
         (&["render", "scene.xml", "--format", "gif", "--output", "/dev/full"], "cannot write /dev/full: "),
     ] {

@@ -42,10 +42,10 @@ pub enum Event<'a> {
         /// The index of the scene in the plan.
         scene: usize,
         /// Whether the verdict was reused from an earlier grading.
-        cached: bool,
+        is_reused: bool,
     },
     /// A submission has its grade.
-    Graded {
+    GradeDone {
         /// The index of the submission.
         submission: usize,
         /// The grade.
@@ -93,9 +93,9 @@ pub fn grade_all(
         }
     };
     let mut grades = distribute(grader, &gradings, &mut tell);
-    Grade::note_same_programs(&mut grades);
+    Grade::record_same_programs(&mut grades);
     drop(gradings);
-    // Sweep again, because processes of killed graders may have ended after the first sweep.
+    // The sweep is repeated, because processes of killed graders may have ended after the first sweep.
     temporary_folders::remove_abandoned();
     let fault = shared.storage_error.into_inner().map(GradeFault::Storing).or(telling.map(GradeFault::Reporting));
     BatchResult { grades, fault }
@@ -129,9 +129,9 @@ fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mu
             match news {
                 SceneEvent::Begins => tell(Event::SceneBegins { submission, scene }),
                 SceneEvent::Step(step) => tell(Event::Step { submission, scene, step }),
-                SceneEvent::Done(cached) => tell(Event::SceneDone { submission, scene, cached }),
+                SceneEvent::Done(cached) => tell(Event::SceneDone { submission, scene, is_reused: cached }),
                 SceneEvent::Graded(grade) => {
-                    tell(Event::Graded { submission, grade: &grade });
+                    tell(Event::GradeDone { submission, grade: &grade });
                     grades[submission] = Some(*grade);
                 }
             }

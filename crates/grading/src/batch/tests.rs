@@ -66,7 +66,7 @@ fn an_interrupted_grading_has_no_points_and_goes_on_where_it_stopped_and_ends_th
     for stop_after in [3, 9] {
         let (cancellation, mut done) = (Cancellation::default(), 0);
         let mut on_event = |event: Event<'_>| {
-            if let Event::SceneDone { cached: false, .. } = event {
+            if let Event::SceneDone { is_reused: false, .. } = event {
                 done += 1;
                 if done == stop_after {
                     cancellation.cancel();
@@ -255,12 +255,12 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
     let others = grade.scenes().count() - crashed.len();
     assert_eq!(
-        (located.failed, located.scenes_with_contents, located.scenes_without_contents),
+        (located.failed, located.scenes_with_features, located.scenes_without_features),
         (crashed.len(), crashed.len(), others),
         "{located:?}"
     );
     assert_eq!(
-        (located.failure, located.contents[0].family.as_ref()),
+        (located.failure, located.features[0].family.as_ref()),
         (FailureKind::Crash, "the failsafe moves a zone")
     );
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };

@@ -88,12 +88,12 @@ impl<'a> CoverageObserver<'a> {
     }
 
     /// Records the contacts of a pass, at whose end it is known which of them have bodies in common.
-    fn note_contacts(&mut self) {
+    fn record_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {
             let shares = |other: &WatchedContact| other.0.iter().any(|body| bodies.contains(body));
             let is_alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
-            self.coverage.note_event(if is_alone { alone } else { several });
+            self.coverage.record_event(if is_alone { alone } else { several });
         }
     }
 
@@ -220,13 +220,13 @@ impl Observer for CoverageObserver<'_> {
                     found: events::stage_value(self.stage),
                     fixed: events::any_fixed(self.scene, &bodies),
                 };
-                self.coverage.note_event(&no_contact.event());
+                self.coverage.record_event(&no_contact.event());
             }
         }
     }
 
     fn end_pass(&mut self, pass: Pass, hits: usize) {
-        self.note_contacts();
+        self.record_contacts();
         if !matches!(pass.stage, Stage::Geometric { .. }) {
             self.step.hits.push(hits);
         }
@@ -241,7 +241,7 @@ impl Observer for CoverageObserver<'_> {
         self.step.rounds = round;
         let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
         for zone in self.zone_events(&particles, zone.half_plane) {
-            self.coverage.note_event(&zone.event());
+            self.coverage.record_event(&zone.event());
         }
     }
 
@@ -249,7 +249,7 @@ impl Observer for CoverageObserver<'_> {
         match self.scene.collision {
             Collision::Hybrid { max_iterations, stiffness, .. } => {
                 let step = self.hybrid_step_value(max_iterations, stiffness);
-                self.coverage.note_event(&step.event());
+                self.coverage.record_event(&step.event());
             }
             Collision::ContinuousTime { .. } => {
                 let hits = match self.step.hits.first().copied().unwrap_or(0) {
@@ -259,7 +259,7 @@ impl Observer for CoverageObserver<'_> {
                 };
                 let (restitution, integrator) = (events::restitution(self.scene), events::integrator(self.scene));
                 let step = ContinuousStep { hits, restitution, forces: force_events(&self.scene.forces), integrator };
-                self.coverage.note_event(&step.event());
+                self.coverage.record_event(&step.event());
             }
             Collision::None | Collision::Simple { .. } | Collision::Penalty { .. } => {}
         }

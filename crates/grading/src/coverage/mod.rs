@@ -131,7 +131,7 @@ impl Coverage {
     }
 
     /// Records that an event occurs.
-    fn note_event(&mut self, (family, values): &families::Event) {
+    fn record_event(&mut self, (family, values): &families::Event) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {
                 self.pairings.insert(Pairing { family: *family, first: (first, one), second: (second, other) });

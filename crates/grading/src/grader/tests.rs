@@ -47,7 +47,7 @@ fn grade(
     let submission = std::slice::from_ref(submission);
     let BatchResult { grades, fault } =
         grade_all(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
-            if let Event::SceneDone { submission: 0, scene, cached } = event {
+            if let Event::SceneDone { submission: 0, scene, is_reused: cached } = event {
                 told.push(format!("{scene} {cached}"));
             }
         });

@@ -51,7 +51,7 @@ pub fn find_suite(name: &str) -> Result<Plan, FindError> {
             let text = read_text(path, MAX_SUITE_BYTES).map_err(|why| match why.kind() {
                 io::ErrorKind::NotFound => {
                     let known = built_in_names().collect::<Vec<_>>().join(", ");
-                    format!("no suite {name}: it is neither a file nor one of {known}{}", suggest(name)).into()
+                    format!("there is no suite {name}: it is neither a file nor one of {known}{}", suggest(name)).into()
                 }
                 _ => FindError { message: format!("cannot read the suite {name}"), cause: Some(why) },
             })?;

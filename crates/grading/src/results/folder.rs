@@ -93,7 +93,7 @@ fn open_own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
         FileError::NotRegular { what, .. } => {
-            io::Error::other(format!("it is {what}, not a file that the grader wrote; remove it"))
+            io::Error::other(format!("this is {what}, not a file that the grader wrote; remove it"))
         }
         error => io::Error::other(error),
     })
@@ -132,8 +132,8 @@ pub fn for_each_line<E: From<io::Error>>(
             return Ok(());
         } else {
             let text = format!(
-                "it has a line of more than {MAX_LINE_BYTES} bytes, which is the limit for a result; remove the \
-                    line, and its scenes are graded again"
+                "the journal has a line of more than {MAX_LINE_BYTES} bytes, which is the limit for a result; remove \
+                    the line, and its scenes are graded again"
             );
             return Err(io::Error::other(text).into());
         }

@@ -2,7 +2,7 @@
 use crate::{
     config::Visibility,
     execute::Runner,
-    failure_cause::{Contents, FailureKind, LocatedFailure, TriedScene, locate_failure},
+    failure_cause::{FailureKind, Features, LocatedFailure, TriedScene, locate_failure},
     grade::Grade,
     grader::{SubmissionGrading, lock},
     guard::catch_panic,
@@ -31,8 +31,8 @@ impl SubmissionGrading<'_> {
     /// If the suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
-        // A scene that ran at the same time as the last scene does not count. Otherwise the result would depend on the
-        // number of jobs.
+        // Discards scenes that ran in parallel with the one at which grading stopped. Otherwise the grade would depend
+        // on the number of jobs.
         let known: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
@@ -56,7 +56,7 @@ impl SubmissionGrading<'_> {
             None => (self.digest(), None),
         };
         let mut warnings = self.grader.backend.weaknesses();
-        if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
+        if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.has_other_owner) {
             warnings.push(program_file::SHARED_FILE.to_owned());
         }
         let is_visible = |group: &PlannedGroup| group.marking.visibility == Visibility::Visible;
@@ -73,7 +73,7 @@ impl SubmissionGrading<'_> {
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
-            grade.located_failure = locate_grade_failure(&grade, || self.shared.contents(plan));
+            grade.located_failure = find_failing_features(&grade, || self.shared.features(plan));
         }
         reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
@@ -138,13 +138,13 @@ impl SubmissionGrading<'_> {
 
 /// Returns whether a program was run on the scene and is wrong.
 fn is_wrong(result: &SceneResult) -> bool {
-    let is_of_us = matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun | Verdict::Unusable);
-    !is_of_us && !result.verdict.is_accepted() && result.ended.is_some()
+    let is_grader_fault = matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun | Verdict::Unusable);
+    !is_grader_fault && !result.verdict.is_accepted() && result.ended.is_some()
 }
 
-/// Returns the contents that all failing scenes have in common. `contents` computes the contents of all scenes, in
+/// Returns the features that all failing scenes have in common. `features` computes the features of all scenes, in
 /// order. It is called only if some scenes fail and others do not.
-fn locate_grade_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
+fn find_failing_features<'a>(grade: &Grade, features: impl FnOnce() -> &'a [Features]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::Skipped(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
@@ -154,14 +154,14 @@ fn locate_grade_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Conte
     }
     let tried: Vec<TriedScene<'_>> = grade
         .scenes()
-        .zip(contents())
+        .zip(features())
         .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
-        .map(|(scene, contents)| {
+        .map(|(scene, features)| {
             let steps = match scene.reason {
                 Reason::Program(reached) => reached.steps,
                 _ => 0,
             };
-            TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, contents }
+            TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, features: features }
         })
         .collect();
     locate_failure(&tried)

@@ -86,20 +86,20 @@ impl JudgementBuilder {
             let (kind, number) = claim.place;
             self.claimed_factors[kind][number].add_factor(claim.least_factor.0.midpoint(claim.greatest_factor.0));
         }
-        // Polynomials that already fit, or count only in the other form, are settled.
-        let hangs = |pending: &&PendingPolynomials| {
+        // A polynomial that already fits, or that is judged only in the other form, needs no further check.
+        let is_open = |pending: &&PendingPolynomials| {
             let (kind, number) = pending.place;
             let is_of_other_form = self.judgement.form != Form::Either && !pending.counts_for_form(self.judgement.form);
-            // While other polynomials may follow, a claimed factor is not confirmed by claims.
-            let is_told = match pending.cause {
+            // As long as further polynomials may follow, claims do not confirm a claimed factor.
+            let is_confirmed = match pending.cause {
                 PendingCause::RoundOff => self.factors_of(kind).range().is_some_and(|range| !is_constant(range)),
                 _ => self.factors[kind][number].range().is_some() || self.identical_polynomials[kind][number] > 0,
             };
-            !is_of_other_form && (!is_told || self.finding(pending).is_some())
+            !is_of_other_form && (!is_confirmed || self.finding(pending).is_some())
         };
-        let hanging: Vec<StepPending> =
-            step.pending.iter().filter(hangs).map(|&polynomials| StepPending { polynomials, is_wrong }).collect();
-        self.pending.extend(hanging);
+        let open: Vec<StepPending> =
+            step.pending.iter().filter(is_open).map(|&polynomials| StepPending { polynomials, is_wrong }).collect();
+        self.pending.extend(open);
     }
 
     /// Returns the finding about polynomials that depend on factors, with the usual factors of the trace so far. The
@@ -108,7 +108,8 @@ impl JudgementBuilder {
     fn finding(&self, pending: &PendingPolynomials) -> Option<Finding> {
         let (kind, number) = pending.place;
         if pending.cause == PendingCause::RoundOff {
-            // Only a program with one factor for all polynomials of this kind cannot have another one here.
+            // A program with one factor for all polynomials of this kind must use it here, too. Other programs may use
+            // any factor.
             return pending.finding(self.factors_of(kind).range().filter(|range| is_constant(*range))?);
         }
         let mut told = self.factors[kind][number];
@@ -208,7 +209,7 @@ impl JudgementBuilder {
     }
 }
 
-/// Returns whether factors are the same factor, except for its roundings.
+/// Returns whether all factors of a range are equal except for rounding errors.
 fn is_constant([least, greatest]: [f64; 2]) -> bool {
     greatest - least <= 1e-9 * least
 }

@@ -38,7 +38,7 @@ pub(super) enum PolynomialJudgement {
     /// The polynomial is right in the definition's form, not the course's.
     RightForm,
     /// The polynomial does not show its factor, and is right only with certain factors.
-    Hangs,
+    DependsOnFactor,
     /// The polynomial is wrong.
     Wrong(Mismatch),
 }
@@ -58,9 +58,10 @@ pub(super) fn compare_first(
 }
 
 impl StepJudgement {
-    /// Notes the evidence of a polynomial; `first` is its comparison with the course's form. A polynomial that depends
-    /// on factors is kept for later if its positions are known (`is_known`).
-    pub(super) fn note_evidence(
+    /// Records what a polynomial shows about the program. `first` is its comparison with the course's form. If the
+    /// polynomial depends on unknown factors, and its positions are known (`is_known`), it is judged at the end of the
+    /// trace.
+    pub(super) fn record_evidence(
         &mut self,
         expected: &ExpectedPolynomials,
         logged: &LoggedPolynomial<'_>,
@@ -73,22 +74,22 @@ impl StepJudgement {
             if is_known {
                 judged.add_pending(logged, (form, PendingCause::Missing), expected, factors.unwrap_or(NO_FACTORS));
             }
-            PolynomialJudgement::Hangs
+            PolynomialJudgement::DependsOnFactor
         };
-        // In each of its forms, the polynomial is larger than the round-off that it has to be.
+        // In each of its forms, the expected polynomial is only round-off, and the logged one is larger.
         let forms = std::iter::once(own).chain(expected.other_form(number));
         let least = forms.map(|form| round_off_factor(form, list)).reduce(|one, other| Some(one?.min(other?)));
         if let Some(least) = least.flatten().filter(|_| first.is_ok()) {
             if is_known {
                 self.add_pending(logged, (Form::Either, PendingCause::RoundOff), own, [least, f64::INFINITY]);
             }
-            return PolynomialJudgement::Hangs;
+            return PolynomialJudgement::DependsOnFactor;
         }
         // The course's form is already known, so a further right polynomial in this form adds nothing.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
-                Ok(found) => self.note_factor(logged, own, found, is_known),
+                Ok(found) => self.record_factor(logged, own, found, is_known),
                 Err((_, factors @ Some(_))) => add_pending(self, Form::Either, own, factors),
                 Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
             };
@@ -102,12 +103,12 @@ impl StepJudgement {
                 } else if other.is_err() {
                     add_pending(self, Form::Right, right, possible_factors(right, list));
                 }
-                self.note_factor(logged, own, found, is_known)
+                self.record_factor(logged, own, found, is_known)
             }
             (Err(_), Ok(found)) => match possible_factors(own, list) {
                 None if found.scale.is_some() => {
                     self.right_form = self.right_form.or(Some(place));
-                    self.note_factor(logged, right, found, is_known);
+                    self.record_factor(logged, right, found, is_known);
                     PolynomialJudgement::RightForm
                 }
                 factors => add_pending(self, Form::Course, own, factors),
@@ -122,9 +123,9 @@ impl StepJudgement {
         }
     }
 
-    /// Notes the factor of a right polynomial. A polynomial with a single coefficient that lacks others, which the
+    /// Records the factor of a right polynomial. A polynomial with a single coefficient that lacks others, which the
     /// course's library would keep with the factor 1, only claims a factor. Other polynomials must confirm it.
-    fn note_factor(
+    fn record_factor(
         &mut self,
         logged: &LoggedPolynomial<'_>,
         expected: &[BoundedValue],
@@ -144,7 +145,7 @@ impl StepJudgement {
         PolynomialJudgement::Right
     }
 
-    /// Notes the used share of the tolerance of a right polynomial, and its factor, if it shows one.
+    /// Records the used share of the tolerance of a right polynomial, and its factor, if it shows one.
     #[inline]
     pub(super) fn add_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
         self.shares.coefficient = self.shares.coefficient.max(found.tolerance_share);
@@ -153,8 +154,9 @@ impl StepJudgement {
         }
     }
 
-    /// Notes that an approach polynomial identical to the reference's has the course's form, if it shows that.
-    pub(super) fn note_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
+    /// Records that the trace uses the course's form, if an approach polynomial that is identical to the reference's
+    /// shows it.
+    pub(super) fn record_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
         let is_of_course = || {
             compare(right, logged.coefficients, &[1.0]).is_err()

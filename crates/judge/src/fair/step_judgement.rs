@@ -29,7 +29,8 @@ pub(crate) struct StepJudgement {
     pub factors: FactorsByPolynomial,
     /// The number of calls of each kind that logged polynomials identical to the reference's.
     pub identical_polynomials: PairKindMap<u64>,
-    /// The number of polynomials that lack other small coefficients than the reference's.
+    /// The number of calls with right polynomials in which small coefficients are present on one side and dropped on
+    /// the other.
     pub lost_decisions: u64,
     /// The used shares of the tolerances.
     pub shares: Shares,
@@ -41,7 +42,7 @@ pub(crate) struct StepJudgement {
     /// factor.
     pub pending: Vec<PendingPolynomials>,
     /// Whether a finding is about polynomials at positions that have the round-off of a response or the failsafe.
-    pub has_endless_search: bool,
+    pub has_finding_after_response: bool,
 }
 
 impl StepJudgement {
@@ -88,8 +89,8 @@ impl StepJudgement {
         self.pending.iter().map(|pending| pending.count).sum()
     }
 
-    /// Notes a borderline decision.
-    pub(super) fn note_borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
+    /// Adds a borderline decision.
+    pub(super) fn add_borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
         self.borderline.push(Borderline { step: self.step, pass, pair, collides });
     }
 
@@ -101,7 +102,7 @@ impl StepJudgement {
     /// Returns whether the step has findings that its sensitivity could excuse. Findings about polynomials at known
     /// positions depend only on the polynomials' own bounds.
     pub(super) fn may_be_round_off(&self) -> bool {
-        self.has_endless_search
+        self.has_finding_after_response
             || self.findings.iter().any(|finding| {
                 !matches!(
                     finding.kind(),
@@ -119,7 +120,7 @@ impl StepJudgement {
     /// Returns whether the step has findings that a different decision could explain, because it moves bodies
     /// differently.
     pub(super) fn may_follow_decisions(&self) -> bool {
-        self.has_endless_search
+        self.has_finding_after_response
             || self.findings.iter().any(|finding| {
                 matches!(
                     finding.kind(),

@@ -112,7 +112,7 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
     let run = |worker: &mut Worker| {
         while work.load(Ordering::Relaxed) <= rest {
             // The used work is read before the step is taken, so that only earlier steps are counted.
-            let is_asked = fair_work.load(Ordering::Relaxed) <= fair_rest;
+            let has_budget = fair_work.load(Ordering::Relaxed) <= fair_rest;
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is used once, so the lock is always free.
             let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -123,7 +123,7 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
                 slot.work = worker.simulation.work() - begin;
                 slot.is_judged = slot.work <= rest;
             }
-            if is_asked && slot.is_judged && !slot.is_fairly_judged {
+            if has_budget && slot.is_judged && !slot.is_fairly_judged {
                 let begin = worker.simulation.work();
                 worker.simulation.limit_work(begin.saturating_add(fair_rest));
                 judge_fairly(&mut slot, worker, shape);
@@ -182,7 +182,7 @@ fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>)
         *is_extraordinary = !records.states().all(|state| context.ordinary_range.contains(state));
         *is_deferred = *is_extraordinary && !records.starts_from_ordinary_states(context);
         if !*is_deferred {
-            *judged = fair::judge(context, &mut worker.simulation, records, result.identical);
+            *judged = fair::judge(context, &mut worker.simulation, records, result.is_identical);
         }
     }
 }

@@ -34,7 +34,7 @@ impl PendingFindings {
         }
     }
 
-    /// Notes the fault of a polynomial of the current step and frame that does not [pass](super::passes).
+    /// Records the fault of a polynomial of the current step and frame that does not [pass](super::passes).
     pub(crate) fn compare(
         &mut self,
         (step, frame): (u32, u64),
@@ -70,7 +70,7 @@ impl PendingFindings {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
                     let rescaled = RescaledCoefficient { power, expected: rescaled, actual: coefficient, residual };
-                    finding(wrong_coefficient(place(), rescaled, expected, &shown))
+                    finding(describe_wrong_coefficient(place(), rescaled, expected, &shown))
                 });
             }
         }
@@ -87,7 +87,7 @@ impl PendingFindings {
 }
 
 /// Returns the coefficient that a person would call wrong.
-fn wrong_coefficient(
+fn describe_wrong_coefficient(
     place: PolynomialPlace,
     rescaled: RescaledCoefficient,
     expected: &Polynomial,

@@ -76,7 +76,7 @@ fn main() -> anyhow::Result<ExitCode> {
     count_recognized(&wrong);
     println!("slowest: {row} on {scene}, {slowest:.2?}");
     count_together(&wrong);
-    println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
+    println!("{} correct variant is reported as wrong", if accused { "a" } else { "no" });
     Ok(ExitCode::from(u8::from(accused)))
 }
 

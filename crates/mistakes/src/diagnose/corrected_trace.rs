@@ -9,7 +9,7 @@ pub struct CorrectedTrace {
     pub explanations: Vec<Explanation>,
     /// The number of explanations at the front that come from all traces together. The others come from this trace
     /// alone.
-    pub agreed: usize,
+    pub agreed_count: usize,
 }
 
 /// Corrects a trace's own explanations with those of all traces together
@@ -22,12 +22,12 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     if explanations.is_empty() {
         return CorrectedTrace {
             explanations: own.iter().filter_map(|one| remove_refuted(one, refuted)).collect(),
-            agreed: 0,
+            agreed_count: 0,
         };
     }
     // The step from which values are not finite is reported for each trace.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
-    CorrectedTrace { agreed: explanations.len(), explanations }
+    CorrectedTrace { agreed_count: explanations.len(), explanations }
 }
 
 /// Returns the explanation without its refuted parts, or `None` if no part is left.
@@ -98,13 +98,13 @@ mod tests {
         let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
         let of_first = correct_trace(&traces[0], &likely, &[]);
-        assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
+        assert_eq!((of_first.agreed_count, of_first.explanations.len()), (1, 1));
         let told = &of_first.explanations[0];
         assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
         // A trace that they do not explain keeps its own explanations.
         assert_eq!(
             correct_trace(std::slice::from_ref(&other), &likely, &[]),
-            CorrectedTrace { explanations: vec![other], agreed: 0 }
+            CorrectedTrace { explanations: vec![other], agreed_count: 0 }
         );
         assert_eq!(correct_trace(&[], &likely, &[]), CorrectedTrace::default());
     }
@@ -115,6 +115,6 @@ mod tests {
         let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);
         let of_second = correct_trace(&traces[1], &likely, &[]);
-        assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));
+        assert_eq!((of_second.agreed_count, of_second.explanations), (1, traces[1].clone()));
     }
 }

@@ -30,18 +30,18 @@ pub(super) struct OpenTrace {
 }
 
 impl OpenTrace {
-    pub(super) fn allows_statement(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.allowed_statements.contains_key(said))
+    pub(super) fn allows_statement(&self, statement: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.allowed_statements.contains_key(statement))
     }
 
-    pub(super) fn allows_complete_statement(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.allowed_statements.get(said) == Some(&true))
+    pub(super) fn allows_complete_statement(&self, statement: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.allowed_statements.get(statement) == Some(&true))
     }
 
     /// Returns whether the trace needs this mistake in addition to others: they reproduce it together, but not
     /// separately.
-    pub(super) fn requires_statement(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.explanation.is_complete() && symptom.explanation.key == said)
+    pub(super) fn requires_statement(&self, statement: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.explanation.is_complete() && symptom.explanation.key == statement)
     }
 }
 
@@ -54,9 +54,9 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
         let mut allowed = alternative_statements(one);
         allowed.retain(|word, _| !is_refuted(word));
         let mut same_as: Vec<String> = one.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
-        let is_told = allowed.contains_key(&one.statement());
+        let is_reported = allowed.contains_key(&one.statement());
         let one = match same_as.iter().position(|key| find(key).is_some()) {
-            _ if is_told => Explanation { same_as, ..one.clone() },
+            _ if is_reported => Explanation { same_as, ..one.clone() },
             Some(place) => explain_by_row(one, find(&same_as.remove(place))?, same_as),
             None => {
                 let row = allowed.keys().find_map(|word| find(word))?;
@@ -76,7 +76,7 @@ struct Support<'a> {
     traces: usize,
     complete_traces: usize,
     /// The number of traces whose first explanation is the statement.
-    first_trace: usize,
+    leading_traces: usize,
     /// The number of traces in which the same quantity is wrong, in any way.
     related_traces: usize,
     /// The number of traces in which the same polynomials are wrong in another way.
@@ -108,15 +108,15 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         for (place, symptom) in
             trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_about_program())
         {
-            let said = symptom.explanation.statement();
+            let statement = symptom.explanation.statement();
             for word in symptom.allowed_statements.keys() {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
-                evidence.first_trace += usize::from(place == 0 && *word == said);
+                evidence.leading_traces += usize::from(place == 0 && *word == statement);
                 // Of several explanations with the same statement, the one with the longest exact form is used.
                 let rank_of = |one: &Explanation| (one.is_exhaustive(), !one.details.is_empty());
-                let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.explanation);
-                if *word == said && evidence.reported.is_none_or(says_more) {
+                let says_more = |reported: &Explanation| rank_of(reported) < rank_of(&symptom.explanation);
+                if *word == statement && evidence.reported.is_none_or(says_more) {
                     evidence.reported = Some(&symptom.explanation);
                 }
             }
@@ -124,9 +124,9 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     }
     for (word, evidence) in &mut all {
         let row = find(word);
-        let is_named = |told: &Explanation| {
+        let is_named = |reported: &Explanation| {
             matches!(
-                &told.topic,
+                &reported.topic,
                 ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::Named(_)), .. }
             )
         };
@@ -135,16 +135,16 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         let first = place.map(|(trace, place)| &open[trace].symptoms[place].explanation);
         let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
         for trace in open {
-            let told = evidence.reported;
+            let reported = evidence.reported;
             let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.explanation.key == one.key);
             evidence.related_traces +=
-                usize::from(told.filter(|told| told.names_stage()).is_some_and(|told| is_kin(&told)));
+                usize::from(reported.filter(|one| one.names_stage()).is_some_and(|one| is_kin(&one)));
             evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;
-            } else if told
+            } else if reported
                 .or(as_told.as_ref())
-                .is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.explanation, told)))
+                .is_some_and(|reported| trace.symptoms.iter().any(|one| contradicts(&one.explanation, reported)))
             {
                 evidence.contradicting_traces += 1;
             }
@@ -155,15 +155,15 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 
 /// Returns whether a trace's explanation contradicts the reported one: both are about the same polynomials, but the
 /// trace's does not allow the report.
-fn contradicts(one: &Explanation, told: &Explanation) -> bool {
-    let is_of_formula = match &told.topic {
+fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
+    let is_of_formula = match &reported.topic {
         ExplanationTopic::Polynomials { found, .. } => matches!(found, PolynomialEvidence::Guess(_)),
         ExplanationTopic::Mistake => {
-            find(&told.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area))
+            find(&reported.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area))
         }
         _ => false,
     };
-    let subjects = told.subjects();
+    let subjects = reported.subjects();
     is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
@@ -178,40 +178,40 @@ pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
         let known = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
-        a.weight().cmp(&b.weight()).then(known).then(a.first_trace.cmp(&b.first_trace)).then(order)
+        a.weight().cmp(&b.weight()).then(known).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
     })?;
     // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
     let mut rivals: Vec<(&&str, &Support<'_>)> = all.iter().filter(is_rival).collect();
-    rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.first_trace));
+    rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.leading_traces));
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
-    let Some(told) = best.reported else {
+    let Some(reported) = best.reported else {
         let &(trace, place) = best.symptoms.first()?;
         return Some(explain_by_row(&open[trace].symptoms[place].explanation, find(word)?, same_as));
     };
-    Some(Explanation { same_as, ..merge_explanations(told, open) })
+    Some(Explanation { same_as, ..merge_explanations(reported, open) })
 }
 
 /// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
 /// that all of them allow.
-fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
-    let mut told = told.clone();
-    let said = told.statement();
+fn merge_explanations(reported: &Explanation, open: &[OpenTrace]) -> Explanation {
+    let mut reported = reported.clone();
+    let statement = reported.statement();
     // Nothing in a contradicting trace is reproduced.
-    let against = open.iter().filter(|trace| !trace.allows_statement(&said)).flat_map(|trace| &trace.symptoms);
-    told.samples += against
-        .filter(|symptom| contradicts(&symptom.explanation, &told))
+    let against = open.iter().filter(|trace| !trace.allows_statement(&statement)).flat_map(|trace| &trace.symptoms);
+    reported.samples += against
+        .filter(|symptom| contradicts(&symptom.explanation, &reported))
         .map(|symptom| symptom.explanation.samples)
         .sum::<u64>();
-    let ExplanationTopic::Polynomials { subjects, found } = &mut told.topic else { return told };
+    let ExplanationTopic::Polynomials { subjects, found } = &mut reported.topic else { return reported };
     let agreeing: Vec<&Symptom> = open
         .iter()
         .flat_map(|trace| &trace.symptoms)
-        .filter(|one| one.allowed_statements.contains_key(&said))
+        .filter(|one| one.allowed_statements.contains_key(&statement))
         .collect();
-    for symptom in agreeing.iter().filter(|symptom| symptom.explanation.statement() == said) {
+    for symptom in agreeing.iter().filter(|symptom| symptom.explanation.statement() == statement) {
         if let ExplanationTopic::Polynomials { subjects: theirs, .. } = &symptom.explanation.topic {
             subjects.extend(theirs);
         }
@@ -219,15 +219,15 @@ fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     subjects.sort_unstable();
     subjects.dedup();
     if let ([subject], PolynomialEvidence::Guess(guess)) = (&subjects[..], found) {
-        let forms = alternative_forms(&told.details);
+        let forms = alternative_forms(&reported.details);
         let is_allowed = |form: &Vec<PolynomialDetail>| {
             let word = claim_of_form(*subject, guess, form);
             agreeing.iter().all(|symptom| symptom.allowed_statements.contains_key(&word))
         };
         let mut keep = forms.iter().map(is_allowed);
-        told.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));
+        reported.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));
     }
-    told
+    reported
 }
 
 const fn is_alternative(detail: &Detail) -> bool {

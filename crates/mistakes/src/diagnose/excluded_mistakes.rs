@@ -17,10 +17,10 @@ use std::{cell::Cell, collections::BTreeMap};
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
 const MAX_TRACES: usize = 6;
 
-/// The number of polynomials in a step above which a program counts as never ending.
+/// The maximum number of polynomials in a step. A program that computes more counts as endless.
 const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
-/// Returns the named keys of mistakes in code that a student of this milestone does not write.
+/// Returns the keys of named mistakes in code that a student of this milestone does not write.
 fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
@@ -37,7 +37,7 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
 
 /// Returns whether, for each trace with values that are not finite, one of the likely mistakes alone leads to such
 /// values.
-fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
+fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
     let ends = |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
@@ -47,12 +47,14 @@ fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explana
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
-/// A known mistake is contradicted by one trace for each this many traces that it explains.
+/// The number of explained traces for which one contradicting trace is needed. A mistake that explains more traces is
+/// only contradicted by several.
 const NAMED_PER_CONTRADICTION: usize = 8;
 
 /// Returns whether traces contradict a mistake of a stage: the same stage is wrong in another way, although the mistake
-/// would show there, and no other known mistake explains it. Where one of the other likely mistakes (`others`) would
-/// show as well, both may be made. A formula's own polynomials contradict it ([`evidence`](super::evidence)).
+/// would show there, and no other known mistake explains it. If one of the other likely mistakes (`others`) would show
+/// as well, the program may make both. A mistake in a formula is contradicted by its own polynomials instead
+/// ([`evidence`](super::evidence)).
 fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
     let Some(row) = find(key).filter(|row| !is_formula_area(row.area)) else { return false };
     let (stage, is_of_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
@@ -86,13 +88,13 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 /// such values.
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
-    let is_asked = |scene: &Scene, key: &str| {
+    let can_show = |scene: &Scene, key: &str| {
         let is_named = |list: &[Explanation]| list.iter().any(|one| alternative_statements(one).contains_key(key));
         find(key).is_none_or(|row| row.area != Area::Integrator)
             || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
     };
     let is_denied = |key: &str, work: &Cell<u64>| {
-        right.iter().any(|scene| is_asked(scene, key) && mistake_is_visible_within(scene, key, work))
+        right.iter().any(|scene| can_show(scene, key) && mistake_is_visible_within(scene, key, work))
     };
     let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
     loop {
@@ -109,7 +111,7 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
                 let rivals =
                     likely.iter().filter(|one| one.topic == ExplanationTopic::Mistake).flat_map(|one| &one.same_as);
                 refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
-                if likely.iter().any(Explanation::is_not_finite) && explain_non_finite_values(&likely, wrong) {
+                if likely.iter().any(Explanation::is_not_finite) && are_non_finite_values_explained(&likely, wrong) {
                     refuted.push(Explanation::NOT_FINITE.to_owned());
                 }
                 return refuted;

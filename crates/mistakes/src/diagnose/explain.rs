@@ -2,7 +2,7 @@
 use super::{
     Detail, Explanation,
     known::{KnownMistakes, explain_kept_steps, is_empty_stage},
-    naming::is_in_other_words,
+    naming::has_same_meaning,
     near_pairs, non_finite, polynomial,
     sampling::{KeptStep, Source, TraceSamples, sample_trace},
     stages,
@@ -28,8 +28,8 @@ const MAX_PAIRS: usize = 400_000;
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
 /// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
-/// content are accepted. Bytes after the first 64 MiB are ignored, and so is an incomplete record. A trace of another
-/// scene yields only the question whether it belongs to this one ([`Explanation::is_other_scene`]).
+/// content are accepted. Bytes after the first 64 MiB are ignored, and so is an incomplete record. For a trace of
+/// another scene, the only explanation asks whether the trace belongs to this one ([`Explanation::is_other_scene`]).
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))
 }
@@ -72,9 +72,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         && find(&explanation.key).is_some_and(|row| is_formula_area(row.area))
         && explanation.is_complete()
     {
-        // A guess about all polynomials is the same mistake in other words, so its terms and its example are added.
-        let is_told = |own: &Explanation| !own.is_unexplained() && own.is_complete();
-        for own in std::mem::take(&mut polynomials).into_iter().filter(is_told) {
+        // If a guess about all polynomials means the same mistake, its terms and its example are added.
+        let is_reported = |own: &Explanation| !own.is_unexplained() && own.is_complete();
+        for own in std::mem::take(&mut polynomials).into_iter().filter(is_reported) {
             // The hint for a remedy stays last, and a mistake that is already reported is not repeated.
             let remedy = explanation.details.len().saturating_sub(1);
             if !explanation.key.ends_with(&own.key) {
@@ -89,10 +89,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     // A known mistake may explain all polynomials even if another mistake prevents it from explaining whole steps.
     known.retain(|one| {
-        let is_told = |other: &Explanation| {
-            other.is_complete() && find(&one.key).is_some_and(|row| is_in_other_words(other, row))
-        };
-        one.is_complete() || !polynomials.iter().any(is_told)
+        let is_reported =
+            |other: &Explanation| other.is_complete() && find(&one.key).is_some_and(|row| has_same_meaning(other, row));
+        one.is_complete() || !polynomials.iter().any(is_reported)
     });
     let open = open.filter(|_| !is_contest);
     let stage = open.and_then(|scan| {
@@ -132,7 +131,7 @@ fn add_letter_note(explanation: &mut Explanation) {
     }
 }
 
-/// Returns whether mistakes in an area of the assignment are mistakes of polynomials.
+/// Returns whether mistakes in an area of the assignment are mistakes in polynomials.
 pub(super) const fn is_formula_area(area: Area) -> bool {
     matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
 }

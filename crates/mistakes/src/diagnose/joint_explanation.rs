@@ -17,12 +17,13 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of mistakes reported for a program, in addition to empty stages.
 const MAX_MISTAKES: usize = 3;
 
-/// The number of traces from which on a single trace is no evidence for an empty stage.
+/// With at least this many traces, a single trace is not enough evidence for an empty stage.
 const MANY_TRACES: usize = 8;
 
 /// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
 /// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
-/// contradict. The first value that is not finite does not count, and comes last, because it follows from the others.
+/// contradict. The explanation of the first value that is not finite does not count toward this limit. It comes last,
+/// because such values follow from the other mistakes.
 ///
 /// A single scene often cannot distinguish mistakes; several together nearly always can.
 pub fn explain_together<'a>(
@@ -30,7 +31,7 @@ pub fn explain_together<'a>(
     refuted: &[String],
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
-    // A stage that shows in one trace is not empty, even if it does not show in other traces.
+    // A stage that is visible in one trace is not empty, even if it is not visible in other traces.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.contradicted_keys).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
@@ -45,16 +46,16 @@ pub fn explain_together<'a>(
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
     while found.len() + usize::from(!empty.is_empty()) < MAX_MISTAKES {
         let Some(next) = find_likeliest(&open) else { break };
-        let said = next.statement();
+        let statement = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
-        let is_told = if is_empty {
-            is_confirmed(&open, &said)
+        let is_reported = if is_empty {
+            is_confirmed(&open, &statement)
         } else {
             (found.is_empty() && empty.is_empty())
                 || (next.is_exhaustive() && is_supported(&open, &next, &found) && !is_repetition(&found, &next, &open))
         };
-        if is_told {
-            remove_explained(&mut open, &said);
+        if is_reported {
+            remove_explained(&mut open, &statement);
             let zeros = explain_zero_coefficients(&next);
             match (is_empty, zeros.is_empty()) {
                 (true, _) => empty.push(next),
@@ -63,9 +64,9 @@ pub fn explain_together<'a>(
             }
         } else {
             for trace in &mut open {
-                trace.symptoms.iter_mut().for_each(|symptom| _ = symptom.allowed_statements.remove(&said));
+                trace.symptoms.iter_mut().for_each(|symptom| _ = symptom.allowed_statements.remove(&statement));
                 trace.symptoms.retain(|symptom| {
-                    !symptom.allowed_statements.is_empty() && symptom.explanation.statement() != said
+                    !symptom.allowed_statements.is_empty() && symptom.explanation.statement() != statement
                 });
             }
         }
@@ -83,12 +84,12 @@ pub fn explain_together<'a>(
         found.insert(0, head);
     }
     near_pairs::merge_explanations(&mut found, &traces);
-    let end = explain_not_finite(&traces).filter(|one| !refuted.contains(&one.key));
+    let end = explain_non_finite_value(&traces).filter(|one| !refuted.contains(&one.key));
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
 }
 
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
-fn explain_not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
+fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
     let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
@@ -109,21 +110,21 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
         ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero)), .. }
     );
     let subjects = one.subjects();
-    // The course supplies the approach of particles and edges.
-    let is_theirs = |subject: &&Subject| **subject != Subject::EdgeApproach;
+    // The course supplies the approach polynomial of particles and edges.
+    let is_supplied = |subject: &&Subject| **subject != Subject::EdgeApproach;
     let is_all =
-        |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
+        |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_supplied).all(|one| subjects.contains(one));
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
         let of_kind = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
         CATALOGUE.iter().find(of_kind)
     };
-    let told = |row: &Row| Explanation {
+    let to_explanation = |row: &Row| Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
         example: None,
         ..explain_by_row(one, row, Vec::new())
     };
-    kinds.filter_map(row).map(told).collect()
+    kinds.filter_map(row).map(to_explanation).collect()
 }
 
 /// Returns one explanation for several empty stages. Their keys are in [`Explanation::same_as`]. A stage with another
@@ -163,10 +164,10 @@ fn explain_wrong_polynomials(
     }
     let most = wrong.values().copied().max()?;
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
-    let is_told = found.iter().any(|one| !one.subjects().is_empty())
+    let is_reported = found.iter().any(|one| !one.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
     // A fault in only a few traces may follow from another mistake.
-    if is_told || most * 2 <= traces.len() {
+    if is_reported || most * 2 <= traces.len() {
         return None;
     }
     let subjects: Vec<Subject> = wrong.into_iter().filter(|(_, count)| *count == most).map(|(one, _)| one).collect();
@@ -185,7 +186,7 @@ fn explain_wrong_polynomials(
         .map(|guess| Explanation::for_wrong_polynomials(subjects.clone(), PolynomialEvidence::Guess(guess.clone())));
     let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
-        // A known formula is tried on every trace, so few may deny it.
+        // A known formula is tried on every trace, so only few traces may contradict it.
         Some((named, head)) if most.saturating_sub(named) * if is_known(&head) { 8 } else { 2 } < most => Some(head),
         _ => Some(Explanation::for_wrong_polynomials(subjects, PolynomialEvidence::Nothing)),
     }
@@ -193,8 +194,8 @@ fn explain_wrong_polynomials(
 
 /// Returns whether an explained trace also needs this known mistake.
 fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
-    let said = next.statement();
-    open.iter().any(|trace| trace.is_covered && trace.requires_statement(&said))
+    let statement = next.statement();
+    open.iter().any(|trace| trace.is_covered && trace.requires_statement(&statement))
 }
 
 /// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
@@ -203,7 +204,7 @@ fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
 fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
-    let is_said = |one: &Explanation| {
+    let has_details = |one: &Explanation| {
         if are_needed && matches!(one.topic, ExplanationTopic::Mistake) {
             return false;
         }
@@ -231,7 +232,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
         let in_one_vector = of_vectors.is_some_and(|(one, next)| one.pair_kind() == next.pair_kind());
         in_one_formula || in_one_stage || in_one_vector
     };
-    found.iter().any(is_said)
+    found.iter().any(has_details)
 }
 
 /// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
@@ -264,8 +265,8 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let late = CATALOGUE.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| open.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
-    // An explanation of a stage's fault covers explanations that only name the stage.
-    let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
+    // An explanation of a fault in the stage replaces explanations that only name the stage.
+    let has_details = all().any(|one| is_of_it(one) && !one.is_vague());
     // If pairs are in another order, the polynomials of one pair are in the place of another pair's.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
     let has_order = all().any(|one| one.key == Explanation::ORDER);
@@ -274,7 +275,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
             symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));
             let one = &symptom.explanation;
             let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
-            !(is_weak || (is_said && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)
+            !(is_weak || (has_details && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)
         });
     }
     open.retain(|trace| !trace.symptoms.is_empty());
@@ -292,8 +293,8 @@ pub(super) const fn area_stage(area: Area) -> Option<StepStage> {
 }
 
 /// Returns whether enough traces suggest that the stage is empty.
-fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
-    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(said)).count() > 1
+fn is_confirmed(open: &[OpenTrace], statement: &str) -> bool {
+    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(statement)).count() > 1
 }
 
 /// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
@@ -301,9 +302,9 @@ fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
 /// nothing explains them. A single symptom may follow from an earlier mistake, as missing polynomials do. After a fault
 /// of a stage, whose mistake is unknown, and among many traces, a single trace may fit a known mistake by chance.
 fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
-    let said = next.statement();
+    let statement = next.statement();
     let naming = |is_covered: bool| {
-        open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&said)).count()
+        open.iter().filter(|one| one.is_covered == is_covered && one.allows_complete_statement(&statement)).count()
     };
     if next.names_stage() {
         return naming(false) > 1 && !next.is_vague();
@@ -317,11 +318,11 @@ fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -
 
 /// Removes everything that a mistake explains. If the mistake explains a trace, only the trace's other complete
 /// explanations are kept.
-fn remove_explained(open: &mut [OpenTrace], said: &str) {
-    for trace in open.iter_mut().filter(|trace| trace.allows_statement(said)) {
+fn remove_explained(open: &mut [OpenTrace], statement: &str) {
+    for trace in open.iter_mut().filter(|trace| trace.allows_statement(statement)) {
         trace.is_covered = true;
         trace
             .symptoms
-            .retain(|symptom| !symptom.allowed_statements.contains_key(said) && symptom.explanation.is_complete());
+            .retain(|symptom| !symptom.allowed_statements.contains_key(statement) && symptom.explanation.is_complete());
     }
 }

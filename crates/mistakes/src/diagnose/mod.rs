@@ -35,7 +35,7 @@ pub use joint_explanation::explain_together;
 pub use known::{find_known, may_change_trace, mistake_is_visible, reproduces};
 pub use naming::is_named_in;
 pub use near_pairs::{PairTrait, pair_traits};
-pub use non_finite::explain_not_finite;
+pub use non_finite::explain_non_finite_value;
 pub use student_code::{find_milestone, is_written_by_student};
 
 #[cfg(test)]

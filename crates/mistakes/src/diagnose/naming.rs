@@ -33,8 +33,8 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         let is_about = |one: &Explanation| one.subjects().iter().any(|subject| subjects.contains(subject));
         return explanations.iter().any(|one| is_about(one) && says_so(one));
     }
-    let said = mistake.statement();
-    explanations.iter().any(|one| alternative_statements(one).contains_key(&said))
+    let statement = mistake.statement();
+    explanations.iter().any(|one| alternative_statements(one).contains_key(&statement))
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
@@ -45,7 +45,7 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_exhaustive())]);
     all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_exhaustive())));
     if one.is_complete() {
-        all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));
+        all.extend(all_rows().filter(|row| has_same_meaning(one, row)).map(|row| (row.id.to_owned(), true)));
     }
     // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake or a
     // general guess.
@@ -61,9 +61,9 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     all
 }
 
-/// Returns whether a guess from the polynomials of a single kind names this known mistake in other words:
-/// `radii-squared-apart` of particles and edges is `pe-radii-squared-apart`.
-pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
+/// Returns whether a guess from the polynomials of a single kind has another key than this known mistake, but means the
+/// same: `radii-squared-apart` of particles and edges is `pe-radii-squared-apart`.
+pub(super) fn has_same_meaning(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
     let ExplanationTopic::Polynomials { subjects, .. } = &one.topic else { return false };
     is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.pair_kind())

@@ -18,7 +18,7 @@ use fosssim_model::{
 
 /// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. It is empty
 /// if all values are finite, or if the reference has the same values.
-pub fn explain_not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
+pub fn explain_non_finite_value(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
@@ -45,9 +45,9 @@ impl NonFiniteSearch {
     /// Checks the first record of a trace.
     pub(super) fn check_first_record(&mut self, frames: &StepFrames) {
         if let Some(wild) = find_non_finite_value(&frames.before.state) {
-            let told =
+            let value =
                 NonFiniteValue { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), recovers: false };
-            *self = Self { is_found: true, explanation: Some(told) };
+            *self = Self { is_found: true, explanation: Some(value) };
         }
     }
 
@@ -61,10 +61,10 @@ impl NonFiniteSearch {
     ) {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(has_non_finite_value);
-            if let Some(told) = &mut self.explanation
-                && !told.recovers
+            if let Some(value) = &mut self.explanation
+                && !value.recovers
             {
-                told.recovers = is_finite();
+                value.recovers = is_finite();
             }
             return;
         }

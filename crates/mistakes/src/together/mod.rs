@@ -81,7 +81,8 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
 }
 
 /// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it: the simulator
-/// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points do not count.
+/// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points are not
+/// included.
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
@@ -134,6 +135,6 @@ pub fn reconcile_explanations(grade: &mut Grade) {
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
         let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted_keys);
-        (scene.corrected_explanations, scene.agreed_count) = (of_scene.explanations, of_scene.agreed);
+        (scene.corrected_explanations, scene.agreed_count) = (of_scene.explanations, of_scene.agreed_count);
     }
 }

@@ -184,7 +184,7 @@ pub struct RecordLists {
     /// The list of impulses.
     pub impulses: ImpulseList,
     /// Whether there is a list of polynomials, and a mid record in each step.
-    pub polynomials: bool,
+    pub has_polynomials: bool,
 }
 
 /// The content of a record's list of impulses.

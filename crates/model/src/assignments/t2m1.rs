@@ -9,12 +9,12 @@ pub(super) const DEFINITION: Definition = Definition {
     handlings: &[
         Handling {
             collision: CollisionType::Simple,
-            records: RecordLists { impulses: ImpulseList::Responses, polynomials: false },
+            records: RecordLists { impulses: ImpulseList::Responses, has_polynomials: false },
             heading: "Simple Collision Handling",
         },
         Handling {
             collision: CollisionType::Penalty,
-            records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
+            records: RecordLists { impulses: ImpulseList::Absent, has_polynomials: false },
             heading: "Collisions disabled",
         },
     ],

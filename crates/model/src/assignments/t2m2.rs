@@ -7,12 +7,12 @@ pub(super) const DEFINITION: Definition = Definition {
     handlings: &[
         Handling {
             collision: CollisionType::ContinuousTime,
-            records: RecordLists { impulses: ImpulseList::Responses, polynomials: true },
+            records: RecordLists { impulses: ImpulseList::Responses, has_polynomials: true },
             heading: "Continuous-Time Collision Handling",
         },
         Handling {
             collision: CollisionType::Hybrid,
-            records: RecordLists { impulses: ImpulseList::Empty, polynomials: true },
+            records: RecordLists { impulses: ImpulseList::Empty, has_polynomials: true },
             heading: "Hybrid Collision Handling",
         },
     ],

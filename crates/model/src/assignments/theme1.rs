@@ -10,7 +10,7 @@ pub(super) const MILESTONE_1: Definition = Definition {
     title: "Theme 1, Milestone 1",
     handlings: &[Handling {
         collision: CollisionType::None,
-        records: RecordLists { impulses: ImpulseList::Absent, polynomials: false },
+        records: RecordLists { impulses: ImpulseList::Absent, has_polynomials: false },
         heading: "Collisions disabled",
     }],
     library: Library {

@@ -175,12 +175,12 @@ fn check_force_directions(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// The severity for a body that starts at exactly the same place as another.
+/// The rule for the severity of a problem about bodies that start at exactly the same place.
 struct ContactRule {
-    /// Whether the penalty force acts; its direction is then NaN.
-    penalty: bool,
+    /// Whether the penalty force acts between the bodies. Its direction is then NaN.
+    has_penalty: bool,
     /// Whether half-planes move fixed particles.
-    responds: bool,
+    moves_fixed: bool,
     thickness: f64,
 }
 
@@ -191,19 +191,19 @@ impl ContactRule {
             Collision::None
             | Collision::Simple { .. }
             | Collision::Penalty { detection: CollisionDetection::Contest, .. } => None,
-            Collision::Penalty { thickness, .. } => Some(Self { penalty: true, responds: false, thickness }),
-            Collision::Hybrid { thickness, .. } => Some(Self { penalty: true, responds: true, thickness }),
-            Collision::ContinuousTime { .. } => Some(Self { penalty: false, responds: true, thickness: 0.0 }),
+            Collision::Penalty { thickness, .. } => Some(Self { has_penalty: true, moves_fixed: false, thickness }),
+            Collision::Hybrid { thickness, .. } => Some(Self { has_penalty: true, moves_fixed: true, thickness }),
+            Collision::ContinuousTime { .. } => Some(Self { has_penalty: false, moves_fixed: true, thickness: 0.0 }),
         }
     }
 
-    /// Returns whether objects touch that have these radii and distance zero.
+    /// Returns whether objects at distance zero touch, if the sum of their radii is `radii`.
     fn touches(&self, radii: f64) -> bool {
-        0.0 < radii + if self.penalty { self.thickness } else { 0.0 }
+        0.0 < radii + if self.has_penalty { self.thickness } else { 0.0 }
     }
 
     fn report(&self, tag: &Tag<'_>, report: &mut Report, message: impl FnOnce() -> String) {
-        if self.penalty {
+        if self.has_penalty {
             let help = "the penalty force between them has no direction and is not a number; move one of them";
             report.add_error(|| problem_at(tag, message(), help));
         } else {
@@ -255,7 +255,7 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
             continue;
         }
         let along = end - start;
-        // Computed like the penalty force does, limits included.
+        // The position on the edge is computed as in the penalty force, including its limits.
         let alpha = ((particle.position - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
         let on_it = (start + alpha * along) - particle.position == Vec2::zeros();
         let at_end = particle.position == start || particle.position == end;
@@ -274,7 +274,7 @@ fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule
         let (toward, normal) = (plane.point - particle.position, plane.normal);
         let scale = toward.dot(&normal) / normal.dot(&normal);
         let on_it = scale * normal == Vec2::zeros();
-        let harmless = particle.fixed && !rule.responds;
+        let harmless = particle.fixed && !rule.moves_fixed;
         if on_it && !harmless && rule.touches(particle.radius) {
             rule.report(tag, report, || format!("particle {number} starts exactly on halfplane {plane_number}"));
         }

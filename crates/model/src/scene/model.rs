@@ -110,7 +110,7 @@ impl Collision {
     /// Never panics: a test checks that every type is handled by its assignment.
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
-        Assignment::for_collisions(kind).definition().handling(kind).expect("an assignment handles what it brings")
+        Assignment::for_collisions(kind).definition().handling(kind).expect("an assignment handles its collision types")
     }
 }
 

@@ -26,7 +26,7 @@ pub enum StepError {
         step: u32,
     },
     /// The step needs more work than allowed ([`Simulation::limit_work`](super::Simulation::limit_work)).
-    #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
+    #[error("step {step}: collision handling exceeds its limit of work; a run of the scene needs far less")]
     Work {
         /// The step, from 1.
         step: u32,

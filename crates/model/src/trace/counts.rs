@@ -56,9 +56,9 @@ pub struct EventCounts {
     /// The largest number of zones after a merge.
     pub most_zones: u64,
     /// The number of calls in a pass.
-    of_pass: PairKindMap<u64>,
+    calls_per_pass: PairKindMap<u64>,
     /// The number of polynomials in a pass that logs any.
-    polynomials_of_pass: u64,
+    polynomials_per_pass: u64,
 }
 
 impl EventCounts {
@@ -66,8 +66,8 @@ impl EventCounts {
     pub fn new(scene: &Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
-        let of_pass = PairKindMap::from_fn(|kind| counts[kind] as u64);
-        Self { of_pass, polynomials_of_pass: pairs.polynomial_count() as u64, ..Self::default() }
+        let calls_per_pass = PairKindMap::from_fn(|kind| counts[kind] as u64);
+        Self { calls_per_pass, polynomials_per_pass: pairs.polynomial_count() as u64, ..Self::default() }
     }
 
     /// Returns the number of passes of all stages.
@@ -98,9 +98,9 @@ impl Observer for EventCounts {
     }
 
     fn end_pass(&mut self, pass: Pass, _hits: usize) {
-        self.of_pass.iter().for_each(|(kind, calls)| self.calls[kind] += calls);
+        self.calls_per_pass.iter().for_each(|(kind, calls)| self.calls[kind] += calls);
         if pass.stage != Stage::Simple {
-            self.polynomials += self.polynomials_of_pass;
+            self.polynomials += self.polynomials_per_pass;
         }
     }
 

@@ -82,9 +82,9 @@ pub struct Digests {
     pub trailing_bytes: u64,
     /// Whether more bytes follow that were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and `trailing`
     /// then count only the bytes that were read, and the digest is not that of the whole trace.
-    pub unread: bool,
+    pub has_more_bytes: bool,
     /// The error that ended the reading before the scene's last record.
-    pub stopped: Option<TraceError>,
+    pub stop_error: Option<TraceError>,
 }
 
 impl Digests {
@@ -103,7 +103,7 @@ impl Digests {
         let mut all = HashingReader { stream, digest: Sha256::new(), bytes: 0 };
         let mut reader = Reader::new(&mut all, layout).with_raw_bytes();
         let (mut current, mut digest, mut steps) = (Frame::default(), Sha256::new(), Vec::new());
-        let stopped = loop {
+        let stop_error = loop {
             match reader.next(&mut current) {
                 Ok(true) => {}
                 Ok(false) => break None,
@@ -116,16 +116,16 @@ impl Digests {
                 steps.push(ShortDigest::from_digest(std::mem::take(&mut digest)));
             }
         };
-        let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
+        let begin = if stop_error.is_some() { reader.record_offset() } else { reader.offset() };
         let records = reader.record_count();
         let failed = reader.count_trailing_bytes().err();
-        let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
+        let has_more_bytes = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
         let end = reader.offset();
         let HashingReader { digest, bytes, .. } = all;
         // The buffer may contain a few more bytes than were read, depending on the stream.
-        let bytes = if unread { end } else { bytes };
-        let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
-        Self { steps, sha256, bytes, records, trailing_bytes: trailing, unread, stopped }
+        let bytes = if has_more_bytes { end } else { bytes };
+        let (sha256, trailing, stop_error) = (finish(digest), bytes - begin, stop_error.or(failed));
+        Self { steps, sha256, bytes, records, trailing_bytes: trailing, has_more_bytes, stop_error }
     }
 }
 
@@ -134,10 +134,10 @@ impl fmt::Display for Digests {
         for (step, digest) in self.steps.iter().enumerate() {
             writeln!(f, "{step} {digest}")?;
         }
-        if let Some(error) = &self.stopped {
+        if let Some(error) = &self.stop_error {
             writeln!(f, "{error}")?;
         }
-        if self.unread {
+        if self.has_more_bytes {
             return writeln!(f, "more than {} bytes, {} records", self.bytes, self.records);
         }
         writeln!(f, "{} bytes, {} records, sha256 {}", self.bytes, self.records, self.sha256)

@@ -1,6 +1,6 @@
 //! Faults of a trace's bytes, and their places.
 //!
-//! The strict [`Reader`](super::Reader) stops at a fault. [`LenientReader`](super::LenientReader) notes it, and
+//! The strict [`Reader`](super::Reader) stops at a fault. [`LenientReader`](super::LenientReader) records it, and
 //! continues like the original.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
@@ -179,8 +179,8 @@ pub enum Malformation {
     },
     /// A record does not fit into the memory for one record.
     #[error(
-        "the record needs more than {limit} bytes of memory, more than this program sets aside for one; the trace is \
-         damaged or of another scene"
+        "the record needs more than {limit} bytes of memory, which is this program's limit for a record; the trace \
+            is damaged or of another scene"
     )]
     FrameTooLarge {
         /// The limit in bytes.
@@ -197,8 +197,8 @@ pub enum Malformation {
     },
     /// A record has the right number of polynomials, but only a part of them was kept.
     #[error(
-        "the record has {logged} polynomials, as many as it should have, but this program compares the first {kept} of \
-         a record of this scene only"
+        "the record has {logged} polynomials, as many as it should have, but this program compares only the first \
+            {kept} of a record of this scene"
     )]
     BeyondKept {
         /// The number of polynomials in the record.

@@ -18,7 +18,7 @@ impl Layout {
     /// Returns the layout of the traces of `scene`.
     pub fn for_scene(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
-        let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.polynomials);
+        let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.has_polynomials);
         Self {
             particles: scene.particles.len(),
             has_impulses: impulses,

@@ -263,19 +263,19 @@ impl<R: Read> LenientReader<R> {
         &self.notes
     }
 
-    /// Notes damage that no reader stops at.
-    fn note_malformation(&mut self, offset: u64, what: Malformation) {
+    /// Records damage at which no reader stops.
+    fn record_malformation(&mut self, offset: u64, what: Malformation) {
         if self.notes.len() < MAX_NOTES {
             self.notes.push(self.error(offset, what));
         }
     }
 
-    /// Notes damage that the original ignores and the strict reader reports.
-    fn note_damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
+    /// Records damage that the original ignores and the strict reader reports.
+    fn record_damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
         if self.is_strict {
             return Err(self.stop(ReadFailure::State, offset, what));
         }
-        self.note_malformation(offset, what);
+        self.record_malformation(offset, what);
         Ok(())
     }
 
@@ -329,7 +329,7 @@ impl<R: Read> LenientReader<R> {
             ));
         }
         if count < 0 {
-            self.note_damage(offset, Malformation::NegativeCount { list, count })?;
+            self.record_damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = usize::try_from(count).unwrap_or(0);
         while impulses.len() < entries {
@@ -353,9 +353,9 @@ impl<R: Read> LenientReader<R> {
         let begin = self.source.offset();
         if self.has_failed {
             frame.is_unchanged = false;
-            self.note_damage(offset, Malformation::CountCut { list, left: begin - offset })?;
+            self.record_damage(offset, Malformation::CountCut { list, left: begin - offset })?;
         } else if count < 0 {
-            self.note_damage(offset, Malformation::NegativeCount { list, count })?;
+            self.record_damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
@@ -402,13 +402,13 @@ impl<R: Read> LenientReader<R> {
         let offset = self.source.offset();
         let written = self.read_integer();
         if self.has_failed {
-            self.note_damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
+            self.record_damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
         } else if written < 0 {
-            self.note_malformation(offset, Malformation::NegativeSize { polynomial: number, size: written });
+            self.record_malformation(offset, Malformation::NegativeSize { polynomial: number, size: written });
         }
         let size = usize::try_from(written).unwrap_or(0);
         if self.is_strict && size > MAX_COEFFICIENTS {
-            self.note_malformation(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
+            self.record_malformation(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
         } else if size > STORABLE_COEFFICIENTS {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
             return Err(self.stop(ReadFailure::Memory, offset, what));
@@ -448,7 +448,7 @@ impl<R: Read> LenientReader<R> {
         frame.is_unchanged &= !self.has_failed && written >= 0;
         if whole && self.has_failed {
             let left = self.source.offset() - begin;
-            self.note_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
+            self.record_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }
         Ok(())
     }

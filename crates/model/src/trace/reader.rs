@@ -69,7 +69,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Lets the reader note impulses whose edges or half-planes do not exist in the scene.
+    /// Lets the reader report impulses whose edges or half-planes do not exist in the scene.
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));
@@ -109,14 +109,14 @@ impl<R: Read> Reader<R> {
         swap(&mut frame.state, &mut self.frame.state);
         swap(&mut frame.impulses, &mut self.frame.impulses);
         swap(&mut frame.polynomials, &mut self.frame.polynomials);
-        self.note_impulses(&frame.impulses);
+        self.record_odd_impulses(&frame.impulses);
         self.notes.extend_from_slice(self.records.notes());
         self.notes.truncate(MAX_NOTES);
         Ok(true)
     }
 
     /// Returns oddities of the last record that do not stop the reading: impulses of unknown type or with missing
-    /// objects, sizes below 0 (read as 0) or above 6. At most 16.
+    /// objects, sizes below 0 (read as 0) or above 6. At most 16 are kept.
     pub fn notes(&self) -> &[TraceError] {
         &self.notes
     }
@@ -164,8 +164,8 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Notes the odd impulses of the last record.
-    fn note_impulses(&mut self, impulses: &[LoggedImpulse]) {
+    /// Records the odd impulses of the last record.
+    fn record_odd_impulses(&mut self, impulses: &[LoggedImpulse]) {
         let (record, list) = (self.record_count() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {
             let offset = list + number * RecordList::Impulses.entry_bytes();

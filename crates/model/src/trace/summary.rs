@@ -1,4 +1,4 @@
-//! A readable summary of a trace, for snapshot tests and for people.
+//! A readable summary of a trace, for snapshot tests and for readers.
 //!
 //! The text depends only on the scene and the bytes, so the same trace gives the same text everywhere. Numbers are
 //! printed with the fewest digits that read back to the same bits. Passes, pair kinds and zones, which a trace does not
@@ -124,11 +124,11 @@ impl fmt::Display for Summary {
         let (edges, planes) =
             (format_count(self.edges as u64, "edge"), format_count(self.half_planes as u64, "half-plane"));
         writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
-        let Digests { bytes, records, trailing_bytes: trailing, unread, stopped, sha256, .. } = &self.trace;
+        let Digests { bytes, records, trailing_bytes: trailing, has_more_bytes, stop_error, sha256, .. } = &self.trace;
         let bytes = format_count(*bytes, "byte");
-        let more = if *unread { "more than " } else { "" };
+        let more = if *has_more_bytes { "more than " } else { "" };
         writeln!(f, "trace          {more}{bytes}, {records} of {}", format_count(self.layout.records(), "record"))?;
-        if let Some(error) = stopped {
+        if let Some(error) = stop_error {
             writeln!(f, "damage         {error}")?;
         }
         if *trailing > 0 {
@@ -144,7 +144,7 @@ impl fmt::Display for Summary {
             writeln!(f, "polynomials    {} ({} per detection pass)", self.polynomials, self.polynomials_per_pass)?;
         }
         self.write_collisions(f)?;
-        if *unread {
+        if *has_more_bytes {
             return writeln!(f, "sha256         unknown, because not all bytes were read");
         }
         writeln!(f, "sha256         {sha256}")

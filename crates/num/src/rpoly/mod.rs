@@ -41,20 +41,20 @@ pub struct DoesNotTerminate;
 /// The zeros of a polynomial **in the order in which they were found**, not sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Zeros {
-    rejected: bool,
+    is_rejected: bool,
     length: usize,
     steps: u32,
     list: [Zero; MAX_DEGREE],
 }
 
 impl Zeros {
-    const REJECTED: Self = Self { rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
+    const REJECTED: Self = Self { is_rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
 
     /// Returns the count that the original returns: the degree, less if the search stopped early, or `-1` if the
     /// polynomial was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
     pub fn count(&self) -> i32 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
-        if self.rejected { -1 } else { self.length as i32 }
+        if self.is_rejected { -1 } else { self.length as i32 }
     }
 
     /// Returns the zeros as pairs (real part, imaginary part). The list is empty if the polynomial was rejected.
@@ -70,7 +70,7 @@ impl Zeros {
     }
 
     #[inline]
-    fn report(&mut self, zero: Zero) {
+    fn add_zero(&mut self, zero: Zero) {
         self.list[self.length] = zero;
         self.length += 1;
     }
@@ -102,7 +102,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
         return Ok(Zeros::REJECTED);
     }
     while coefficients[degree] == 0.0 {
-        zeros.report((0.0, 0.0));
+        zeros.add_zero((0.0, 0.0));
         degree -= 1;
     }
     match degree {
@@ -122,8 +122,8 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
 #[inline]
 fn solve_closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
     match *coefficients {
-        [slope, value] => zeros.report((-value / slope, 0.0)),
-        [a, b, c] => quadratic::zeros(a, b, c).into_iter().for_each(|zero| zeros.report(zero)),
+        [slope, value] => zeros.add_zero((-value / slope, 0.0)),
+        [a, b, c] => quadratic::zeros(a, b, c).into_iter().for_each(|zero| zeros.add_zero(zero)),
         _ => {}
     }
 }
@@ -146,12 +146,12 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
         match found {
             None => return Ok(()),
             Some(SearchResult::One { zero, quotient }) => {
-                zeros.report((zero, 0.0));
+                zeros.add_zero((zero, 0.0));
                 polynomial = quotient;
                 degree -= 1;
             }
             Some(SearchResult::Two { zeros: pair, quotient }) => {
-                pair.into_iter().for_each(|zero| zeros.report(zero));
+                pair.into_iter().for_each(|zero| zeros.add_zero(zero));
                 polynomial = quotient;
                 degree -= 2;
             }

@@ -75,14 +75,14 @@ impl PolynomialPlot<'_> {
         if let Some(common) = self.common {
             let top = row_top(rows - 1);
             sheet.draw_rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
-            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Bad, "all positive");
-            draw_sets(common, Ink::Bad, top, 1.0, &mut sheet);
+            sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Mark, "all positive");
+            draw_sets(common, Ink::Mark, top, 1.0, &mut sheet);
         }
         if let Some(time) = self.impact.filter(|time| (0.0..=1.0).contains(time)) {
-            sheet.line(Ink::Bad, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
+            sheet.line(Ink::Mark, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
             let (place, anchor) =
                 if time < 0.6 { (x(time) + 5.0, Anchor::Start) } else { (x(time) - 5.0, Anchor::End) };
-            sheet.text([place, TOP + 4.0], anchor, Tone::Bad, &format!("impact at {}", format_short(time)));
+            sheet.text([place, TOP + 4.0], anchor, Tone::Mark, &format!("impact at {}", format_short(time)));
         }
         sheet.finish()
     }

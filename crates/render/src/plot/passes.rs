@@ -55,8 +55,8 @@ impl PassPlot<'_> {
             }
         }
         for &x in &differing {
-            sheet.draw_bar(Ink::Bad, [x - 1.5, TOP], [3.0, BOTTOM - TOP], 0.25);
-            sheet.draw_marker(Ink::Bad, [x, TOP - 8.0]);
+            sheet.draw_bar(Ink::Mark, [x - 1.5, TOP], [3.0, BOTTOM - TOP], 0.25);
+            sheet.draw_marker(Ink::Mark, [x, TOP - 8.0]);
         }
         for (number, points) in [expected, actual].iter().enumerate() {
             sheet.draw_series(Ink::Series(number), points, number, 2);

@@ -47,13 +47,13 @@ impl ResidualPlot<'_> {
             && (1..=steps).contains(&(step as usize))
         {
             let x = columns.x(step as usize - 1);
-            sheet.line(Ink::Bad, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
+            sheet.line(Ink::Mark, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
             let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
-            sheet.text([place, TOP - LANE_HEIGHT + 8.0], anchor, Tone::Bad, &format!("step {step}: {why}"));
+            sheet.text([place, TOP - LANE_HEIGHT + 8.0], anchor, Tone::Mark, &format!("step {step}: {why}"));
         }
         let y = scale.y(self.tolerance);
-        sheet.line(Ink::Bad, 1.5, &[[LEFT, y], [RIGHT, y]]);
-        sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", format_short(self.tolerance)));
+        sheet.line(Ink::Mark, 1.5, &[[LEFT, y], [RIGHT, y]]);
+        sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Mark, &format!("tolerance {}", format_short(self.tolerance)));
         for (number, series) in self.series.iter().enumerate() {
             let ink = Ink::Series(number);
             let points: Vec<[f64; 2]> = (0..columns.columns)

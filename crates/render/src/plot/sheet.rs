@@ -21,7 +21,7 @@ pub enum Ink {
     /// The ink draws grid lines.
     Grid,
     /// The ink draws wrong values, limits and impacts.
-    Bad,
+    Mark,
     /// The ink draws a series, numbered from 0. After four series the styles repeat.
     Series(usize),
 }
@@ -35,7 +35,7 @@ impl Ink {
         match self {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
             Self::Grid => ("gr".to_owned(), "#dfe3e8"),
-            Self::Bad => (format!("b{kind}"), "#b3261e"),
+            Self::Mark => (format!("b{kind}"), "#b3261e"),
             Self::Series(number) => (format!("{kind}{}", number % 4 + 1), SERIES_COLORS[number % 4]),
         }
     }
@@ -49,7 +49,7 @@ impl Ink {
                 2 => " stroke-dasharray=\"2 3\"",
                 _ => " stroke-dasharray=\"8 3 2 3\"",
             },
-            Self::Bad => " stroke-dasharray=\"4 3\"",
+            Self::Mark => " stroke-dasharray=\"4 3\"",
             Self::Axis | Self::Grid => "",
         }
     }
@@ -68,7 +68,7 @@ pub enum Anchor {
 pub enum Tone {
     Plain,
     Faint,
-    Bad,
+    Mark,
 }
 
 /// A sheet of SVG with its content.
@@ -203,7 +203,7 @@ impl Sheet {
                 2 => format!("M{} {}l3.6 6.2h-7.2z", format_pixel(x), format_pixel(y - 4.0)),
                 _ => format!("M{} {}l4 4l-4 4l-4 -4z", format_pixel(x), format_pixel(y - 4.0)),
             },
-            Ink::Axis | Ink::Grid | Ink::Bad => {
+            Ink::Axis | Ink::Grid | Ink::Mark => {
                 let ink = self.stroke_attributes(ink);
                 let (x, y) = (format_pixel(x - 3.5), format_pixel(y - 3.5));
                 let _ = writeln!(self.svg, "<path{ink} stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>");
@@ -226,7 +226,7 @@ impl Sheet {
         let (class, color) = match tone {
             Tone::Plain => ("", "#1b1f24"),
             Tone::Faint => (" class=\"ft\"", "#5f6871"),
-            Tone::Bad => (" class=\"bt\"", "#b3261e"),
+            Tone::Mark => (" class=\"bt\"", "#b3261e"),
         };
         let (x, y) = (format_pixel(x), format_pixel(y));
         let _ = writeln!(
@@ -257,7 +257,7 @@ impl Sheet {
         let mut x = left;
         for &(ink, name) in names {
             self.line(ink, 2.0, &[[x, base - 4.0], [x + 26.0, base - 4.0]]);
-            if !matches!(ink, Ink::Bad) {
+            if !matches!(ink, Ink::Mark) {
                 self.draw_marker(ink, [x + 13.0, base - 4.0]);
             }
             self.text([x + 32.0, base], Anchor::Start, Tone::Plain, name);

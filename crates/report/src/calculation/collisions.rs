@@ -8,7 +8,7 @@ use crate::{
     words::explanation::explain_letters,
 };
 use fosssim_findings::{PairText, PassText, explanation::Subject};
-use fosssim_judge::{overlap::OverlapStudy, study::Study};
+use fosssim_judge::{overlap::OverlapCheck, study::Study};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, PairMotion, Pass, Stage, State, Zone},
@@ -51,7 +51,7 @@ impl<'a> CollisionWalk<'a> {
     fn detection_text(&self, detection: &Detection<'_>) -> Option<String> {
         let &Detection { pass, pair, q_start, q_end, .. } = detection;
         if pass.stage == Stage::Simple {
-            let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
+            let study = &OverlapCheck::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
             let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
             return Some(format!("{}:\n{}\n", PairText(pair), report.body(format_short, Style::Plain)));
         }

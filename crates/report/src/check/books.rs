@@ -14,8 +14,8 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
     let (look, word) = match outcome.parity.overall {
-        Overall::Passed => (TextStyle::Good, "passed"),
-        Overall::Failed => (TextStyle::Bad, "failed"),
+        Overall::Passed => (TextStyle::Right, "passed"),
+        Overall::Failed => (TextStyle::Wrong, "failed"),
         Overall::None => (TextStyle::Notice, "no verdict"),
     };
     let mut found: Vec<String> = Vec::new();

@@ -84,7 +84,7 @@ impl SideBySide {
             table.heading(["", "expected", "actual", ""]);
         }
         for Row { name, expected, actual, differs } in &self.rows {
-            let mark = |text: String| if *differs { Cell::with_style(TextStyle::Bad, text) } else { text.into() };
+            let mark = |text: String| if *differs { Cell::with_style(TextStyle::Wrong, text) } else { text.into() };
             let word = if *differs { "<- differs" } else { "" };
             table.row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
         }

@@ -1,4 +1,4 @@
-//! The section about the fair rules in the check report for people.
+//! The section about the fair rules in the text of the check report.
 use super::super::{
     number::{count, format_g},
     step_share,
@@ -74,8 +74,8 @@ pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
 /// Returns the text of the verdict and its style.
 pub(super) const fn verdict(fair: &Judgement) -> (TextStyle, &'static str) {
     match fair.verdict {
-        FairVerdict::Accepted => (TextStyle::Good, "accepted"),
-        FairVerdict::Rejected => (TextStyle::Bad, "rejected"),
+        FairVerdict::Accepted => (TextStyle::Right, "accepted"),
+        FairVerdict::Rejected => (TextStyle::Wrong, "rejected"),
         FairVerdict::None => (TextStyle::Notice, "undecided"),
     }
 }

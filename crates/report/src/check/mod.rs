@@ -1,7 +1,7 @@
 //! The report on one trace. It contains the verdict, the residuals, the fair rules' judgement, the findings and the
 //! first difference.
 //!
-//! [`text`](Check::text) renders the report for people, and [`json`](Check::json) renders it for programs
+//! [`text`](Check::text) renders the report as text, and [`json`](Check::json) renders it as JSON
 //! (`schemas/check.schema.json`). Both have the same content, which depends only on the outcome.
 
 pub(crate) mod advice;
@@ -59,7 +59,7 @@ pub struct Check<'a> {
     /// Whether the text contains all tables; otherwise it contains only as much as fits on a screen.
     pub tables: bool,
     /// The kind of file that the trace probably is, if it begins like another kind.
-    pub looks_like: Option<&'a str>,
+    pub other_file_kind: Option<&'a str>,
 }
 
 impl Check<'_> {
@@ -75,7 +75,7 @@ impl Check<'_> {
 
     /// Returns whether the file is not a trace at all. In that case, the report says only that.
     pub(crate) fn is_not_a_trace(&self) -> bool {
-        self.looks_like.is_some() && !self.is_accepted()
+        self.other_file_kind.is_some() && !self.is_accepted()
     }
 
     /// Returns a sentence about which book accepts the trace; `None` if the rule books agree.
@@ -93,7 +93,7 @@ impl Check<'_> {
         self.outcome.findings_by(self.book())
     }
 
-    /// Renders the report as text for people.
+    /// Renders the report as text.
     pub fn text(&self, style: Style) -> String {
         text::render(self, style)
     }
@@ -122,7 +122,7 @@ impl Check<'_> {
         text
     }
 
-    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report as one JSON object, indented, with a line feed at its end.
     pub fn json(&self) -> String {
         to_document(&CheckView::from(self))
     }

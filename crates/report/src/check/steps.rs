@@ -23,7 +23,7 @@ pub enum StepChoice {
     /// Show all wrong steps, up to [`MAX_LISTED`].
     All,
     /// Show these steps, whether they are wrong or right; 0 is the first record.
-    These(Vec<u32>),
+    Selected(Vec<u32>),
 }
 
 /// The findings by one rule book in one step.
@@ -95,7 +95,7 @@ impl Steps {
         let wanted = match shown {
             StepChoice::None => false,
             StepChoice::All => true,
-            StepChoice::These(steps) => steps.contains(&step),
+            StepChoice::Selected(steps) => steps.contains(&step),
         };
         if !wanted {
             return;
@@ -137,8 +137,8 @@ pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
 }
 
 /// Returns whether the report shows only particular steps that the user requested.
-pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
-    matches!(check.steps.shown_steps, StepChoice::These(_))
+pub(super) fn shows_only_selected(check: &Check<'_>) -> bool {
+    matches!(check.steps.shown_steps, StepChoice::Selected(_))
 }
 
 /// Returns whether the user requested all wrong steps.
@@ -152,7 +152,7 @@ fn find_requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(
     match &check.steps.shown_steps {
         StepChoice::None => None,
         StepChoice::All => Some(steps.kept_steps.iter().map(|step| (step.number, Some(step))).collect()),
-        StepChoice::These(asked) => Some(asked.iter().map(|&number| (number, found(number))).collect()),
+        StepChoice::Selected(asked) => Some(asked.iter().map(|&number| (number, found(number))).collect()),
     }
 }
 

@@ -1,4 +1,4 @@
-//! Renders the check report for people: first the verdict, then the reasons.
+//! Renders the check report as text: first the verdict, then the reasons.
 use super::{
     super::{
         explain,
@@ -18,8 +18,7 @@ use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
 
 /// The advice for a trace that reaches a limit of this program.
-const LIMIT_ADVICE: &str =
-    "this is a limit of this program, which the original does not have: it is no fault of the trace";
+const LIMIT_ADVICE: &str = "only this program has this limit, not the original; the trace is not at fault";
 
 /// The advice for a step in which the reference's computation has no result.
 const NO_RESULT: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
@@ -39,7 +38,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
         format!("{} {place}\n{lines}", style.paint(TextStyle::Strong, "Stopped at"))
     }));
-    if steps::shows_only_these(check) {
+    if steps::shows_only_selected(check) {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
@@ -93,7 +92,7 @@ fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
 }
 
 fn render_head(check: &Check<'_>, style: Style) -> String {
-    let look = if check.is_accepted() { TextStyle::Good } else { TextStyle::Bad };
+    let look = if check.is_accepted() { TextStyle::Right } else { TextStyle::Wrong };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
     if check.is_not_a_trace() {
         return format!("{verdict}: {} {}\n", check.trace, render_headline(check));
@@ -104,7 +103,7 @@ fn render_head(check: &Check<'_>, style: Style) -> String {
 /// Returns the verdict and the reason for it, in one line.
 pub(crate) fn render_headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
-    if let (Some(kind), true) = (check.looks_like, check.is_not_a_trace()) {
+    if let (Some(kind), true) = (check.other_file_kind, check.is_not_a_trace()) {
         return format!("is not a trace: it {kind}; a program writes one with -s scene.xml -d 0 -o trace.bin");
     }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
@@ -237,7 +236,7 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
 }
 
 fn new_pass_cell(yes: bool) -> Cell {
-    if yes { Cell::with_style(TextStyle::Good, "passed") } else { Cell::with_style(TextStyle::Bad, "failed") }
+    if yes { Cell::with_style(TextStyle::Right, "passed") } else { Cell::with_style(TextStyle::Wrong, "failed") }
 }
 
 /// Formats the share of a tolerance that a residual uses, for a table cell.

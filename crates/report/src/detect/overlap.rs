@@ -1,11 +1,11 @@
 //! The report on a decision of simple collision handling: the overlap, the approach, and the result.
-use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, render_motion, title};
+use super::{AnswerView, DETECT_SCHEMA, DetectView, FormatFn, PlaceView, render_motion, title};
 use crate::{
     number::format_exact,
     style::{Style, TextStyle},
     view::{WrittenNumber, to_document},
 };
-use fosssim_judge::overlap::OverlapStudy;
+use fosssim_judge::overlap::OverlapCheck;
 use fosssim_model::sim::Pair;
 use fosssim_num::{number_serde::WrittenNumbers, vector::Vec2};
 use serde::Serialize;
@@ -14,7 +14,7 @@ use serde::Serialize;
 #[derive(Debug, Clone, Copy)]
 pub struct Overlap<'a> {
     /// The reference's computation for the pair.
-    pub study: &'a OverlapStudy,
+    pub study: &'a OverlapCheck,
     /// The name of the scene, as the user typed it.
     pub scene: &'a str,
     /// The name of the trace, as the user typed it; `None` for the reference's own run.
@@ -28,7 +28,7 @@ pub struct Overlap<'a> {
 }
 
 impl Overlap<'_> {
-    /// Renders the report for people.
+    /// Renders the report as text.
     pub fn text(&self, style: Style) -> String {
         style.paint(TextStyle::Strong, &title(self.pair, self.step, self.trace, self.scene))
             + "\n"
@@ -36,12 +36,11 @@ impl Overlap<'_> {
     }
 
     /// Renders the report without its title. `number` formats numbers.
-    pub(crate) fn body(&self, number: ShownNumber, style: Style) -> String {
+    pub(crate) fn body(&self, number: FormatFn, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(TextStyle::Strong, words));
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
-        let mut text =
-            "  simple collisions: the positions at the end of the step count, and the velocities there\n".to_owned();
+        let mut text = "  simple collisions use the positions and velocities at the end of the step\n".to_owned();
         text += &render_motion(&study.motion, number, style);
         text += &heading("At the end of the step");
         if let Some(alpha) = study.alpha {
@@ -66,7 +65,7 @@ impl Overlap<'_> {
         text += &heading("Decision");
         let (look, words) = match study.collides {
             true => (TextStyle::Notice, "they collide, and the response changes their velocities"),
-            false => (TextStyle::Good, "no collision: objects collide if they overlap and approach each other"),
+            false => (TextStyle::Right, "no collision: objects collide if they overlap and approach each other"),
         };
         text += &format!("  {}\n", style.paint(look, words));
         text += match study.is_certain {
@@ -74,14 +73,14 @@ impl Overlap<'_> {
             false => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(logged) = self.logged {
-            let look = if logged == study.collides { TextStyle::Good } else { TextStyle::Bad };
+            let look = if logged == study.collides { TextStyle::Right } else { TextStyle::Wrong };
             let words = format!("the trace has {} collision of this pair", if logged { "a" } else { "no" });
             text += &format!("  {}\n", style.paint(look, &words));
         }
         text
     }
 
-    /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
+    /// Renders the report as one JSON object, indented, with a line feed at its end.
     pub fn json(&self) -> String {
         let &Self { study, scene, trace, step, pair, .. } = self;
         let time = WrittenNumber(if study.collides { 0.0 } else { f64::INFINITY });

@@ -5,7 +5,7 @@ use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, Reason, SkippedEntry, Verdict,
     config::Visibility,
-    failure_cause::{Content, FailureKind, LocatedFailure},
+    failure_cause::{FailureKind, LocatedFailure, SceneFeature},
     result::{ProgramProgress, RunEnd, WrongTrace},
 };
 use fosssim_judge::{FindingKind, fair::Cause};
@@ -229,10 +229,10 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     grade.verdict = Verdict::RuntimeError;
     grade.located_failure = Some(LocatedFailure {
         failure: FailureKind::Crash,
-        contents: vec![Content { family: "the failsafe moves a zone".into(), value: None }],
+        features: vec![SceneFeature { family: "the failsafe moves a zone".into(), value: None }],
         failed: 24,
-        scenes_with_contents: 24,
-        scenes_without_contents: 61,
+        scenes_with_features: 24,
+        scenes_without_features: 61,
         first: "Detection/a".to_owned(),
         step: 14,
     });

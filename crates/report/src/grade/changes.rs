@@ -16,8 +16,8 @@ pub(crate) fn change_lines(grade: &Grade) -> Vec<(TextStyle, String)> {
     };
     let Changes { newly_right: right, newly_wrong: broke, other_changes: others, .. } = &changes;
     let kinds: [(TextStyle, &str, Vec<String>); 3] = [
-        (TextStyle::Good, "became right", right.iter().map(name).collect()),
-        (TextStyle::Bad, "broke", broke.iter().map(now).collect()),
+        (TextStyle::Right, "became right", right.iter().map(name).collect()),
+        (TextStyle::Wrong, "broke", broke.iter().map(now).collect()),
         (
             TextStyle::Notice,
             if others.len() == 1 { "fails otherwise" } else { "fail otherwise" },

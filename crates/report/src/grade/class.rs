@@ -78,7 +78,7 @@ pub(crate) fn group_same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
 pub(crate) struct ClassFigures {
     pub(crate) submissions: usize,
     /// The number of submissions that were run on at least one scene.
-    pub(crate) ran: usize,
+    pub(crate) run_submissions: usize,
     pub(crate) accepted: usize,
     /// The number of submissions that were run but have no points.
     pub(crate) without_points: usize,
@@ -109,7 +109,7 @@ impl ClassFigures {
         let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
         Self {
             submissions: grades.len(),
-            ran: ran().count(),
+            run_submissions: ran().count(),
             accepted: grades.iter().filter(|grade| grade.verdict.is_accepted()).count(),
             without_points: ran().count() - reached.len(),
             points,
@@ -124,7 +124,7 @@ impl ClassFigures {
 fn render_head(grades: &[Grade]) -> String {
     let figures = ClassFigures::from_grades(grades);
     let all = format_count(figures.submissions as u64, "submission");
-    let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
+    let mut text = format!("{all}, {} ran, {} accepted", figures.run_submissions, figures.accepted);
     if let Some(reached) = figures.points {
         let ([mean, middle, lowest, highest], most) = (reached.map(format_points), format_points(figures.max_points));
         let _ = write!(
@@ -147,7 +147,8 @@ pub(crate) fn has_never_run(grade: &Grade) -> bool {
 }
 
 /// Returns the scenes on which not all submissions are right, the hardest first, and the number of further such scenes.
-/// Submissions that were never run do not count, and neither do scenes that were not run or on which the grader failed.
+/// Submissions that were never run are not counted. Scenes that were not run, or on which the grader failed, are not
+/// counted either.
 pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();

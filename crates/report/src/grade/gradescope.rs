@@ -118,7 +118,7 @@ fn describe_grade(grade: &Grade) -> String {
         Some(reached) => {
             format!("{}: {} of {} points.", grade.verdict, format_points(reached), format_points(grade.max_points))
         }
-        None if grade.is_our_fault() => {
+        None if grade.is_grader_fault() => {
             "The grader failed. This is not your fault and costs no points. Staff must check it.".to_owned()
         }
         None => describe_timeout(grade),

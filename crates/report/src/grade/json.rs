@@ -89,7 +89,7 @@ view! {
         unfit: Option<String> = words::describe_unfit(grade).map(|unfit| strip_control_characters(&unfit)),
         /// The result of the build; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
-        /// The common contents of the scenes in which the program crashes or exceeds a limit; null if there are no such
+        /// The common features of the scenes in which the program crashes or exceeds a limit; null if there are no such
         /// scenes.
         located: Option<LocatedView> = grade.located_failure.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
@@ -145,14 +145,14 @@ view! {
     /// The scenes in which the program fails, and what they have in common.
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
-        /// The common contents of these scenes, as a sentence.
+        /// The common features of these scenes, as a sentence.
         text: String = strip_control_characters(&words::describe_located(found)),
         /// The number of scenes in which the program fails.
         failed: usize = found.failed,
-        /// The number of failing scenes that contain it.
-        with: usize = found.scenes_with_contents,
-        /// The number of scenes that contain it and in which the program does not fail.
-        without: usize = found.scenes_without_contents,
+        /// The number of failing scenes that have these features.
+        with: usize = found.scenes_with_features,
+        /// The number of scenes that have these features and in which the program does not fail.
+        without: usize = found.scenes_without_features,
         /// The first scene in which the program fails.
         first_scene: String = strip_control_characters(&found.first),
         /// The last step of `first_scene` that is complete in the trace.

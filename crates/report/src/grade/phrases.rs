@@ -169,7 +169,7 @@ pub fn format_optional_points(value: Option<f64>) -> String {
 pub fn describe_missing_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {
         None
-    } else if grade.is_our_fault() {
+    } else if grade.is_grader_fault() {
         Some("no points: the grader failed, which is not the submission's fault".to_owned())
     } else {
         let (missing, all) = (grade.count_verdict(Verdict::NotRun), grade.scenes().count());

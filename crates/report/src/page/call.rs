@@ -49,7 +49,7 @@ impl CallContent<'_> {
     /// Returns the polynomials that the trace logs.
     fn logged_polynomials(&self) -> &[Vec<f64>] {
         match &self.call.logged {
-            CallLog::These(logged) => logged,
+            CallLog::Polynomials(logged) => logged,
             CallLog::Nothing | CallLog::Unknown => &[],
         }
     }

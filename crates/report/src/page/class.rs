@@ -223,7 +223,8 @@ fn shorten(words: &str) -> String {
     format!("{} ...", cut.rsplit_once(' ').map_or(cut, |(whole, _)| whole))
 }
 
-/// Returns whether a scene counts as failed. Scenes that were not run, or on which the grader failed, do not count.
+/// Returns whether the submission failed on a scene. Scenes that were not run, or on which the grader failed, are
+/// excluded.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
@@ -259,7 +260,7 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_optional_points);
     let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let rows = [
-        (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
+        (format!("{} of {}", figures.run_submissions, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", format_points(figures.max_points))),
         (median, "median, of submissions that were run".to_owned()),

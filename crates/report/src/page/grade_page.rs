@@ -62,23 +62,23 @@ impl GradePage<'_> {
         let grade = shown.as_ref();
         let causes = group_by_cause(grade);
         let told: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
-        let tells_who =
+        let has_reader_column =
             self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
         let is_accepted = told.iter().all(|(scene, _)| scene.verdict.is_accepted());
         let content = GradeContent {
             page: self,
             grade,
-            rooms: card_details::distribute(told.iter().map(|(_, card)| card.as_ref())),
+            card_details: card_details::distribute(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.submission_fault().is_none(),
             has_groups: grade.submission_fault().is_none() || grade.points > Some(0.0),
             is_accepted,
-            tells_who,
-            columns: 4 + usize::from(tells_who) + usize::from(!is_accepted),
-            alike: causes.iter().map(Vec::len).collect(),
-            told,
+            has_reader_column,
+            columns: 4 + usize::from(has_reader_column) + usize::from(!is_accepted),
+            cause_sizes: causes.iter().map(Vec::len).collect(),
+            listed: told,
         };
         // Without cards, the viewer is left out, because it would be most of the page.
-        let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
+        let script = if content.has_scenes && !content.listed.is_empty() { script() } else { "" };
         render_document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
 }
@@ -91,17 +91,17 @@ struct GradeContent<'a> {
     /// The part of the grade that the reader may see.
     grade: &'a Grade,
     /// The listed scenes, ordered by cause. Each has the parts of its card that fit on the page.
-    told: Vec<(&'a SceneGrade, Option<Card>)>,
-    rooms: Vec<CardDetail>,
+    listed: Vec<(&'a SceneGrade, Option<Card>)>,
+    card_details: Vec<CardDetail>,
     /// The number of scenes with each cause, in the same order.
-    alike: Vec<usize>,
+    cause_sizes: Vec<usize>,
     has_scenes: bool,
     /// Whether the table of groups holds more than zeros.
     has_groups: bool,
     /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
     is_accepted: bool,
-    /// Whether the table of groups has a column that says who sees each group.
-    tells_who: bool,
+    /// Whether the table of groups has a column with the readers of each group.
+    has_reader_column: bool,
     columns: usize,
 }
 
@@ -125,14 +125,14 @@ impl GradeContent<'_> {
 
     /// Returns the scene that shows the first cause, and the number of scenes with it, if no mistake or place is named.
     fn common_cause(&self) -> Option<(&SceneGrade, usize)> {
-        let (first, _) = self.told.first().filter(|_| self.has_scenes && self.grade.located_failure.is_none())?;
-        (!self.is_accepted).then_some((*first, self.alike[0]))
+        let (first, _) = self.listed.first().filter(|_| self.has_scenes && self.grade.located_failure.is_none())?;
+        (!self.is_accepted).then_some((*first, self.cause_sizes[0]))
     }
 
     /// Returns the first scene of a group that the page lists.
     fn first_listed_scene(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
-        self.told.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
+        self.listed.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
     }
 
     /// Renders the smallest scenes.
@@ -144,15 +144,15 @@ impl GradeContent<'_> {
 
     /// Returns the cards of the listed scenes.
     fn shown_cards(&self) -> impl Iterator<Item = Option<&Card>> {
-        self.told.iter().map(|(_, card)| card.as_ref())
+        self.listed.iter().map(|(_, card)| card.as_ref())
     }
 
     /// Returns the parts of the page about the listed scenes, grouped by cause.
     fn articles(&self) -> Vec<Vec<Article<'_>>> {
         let mut outputs = if self.grade.shows_output { OUTPUT_BUDGET } else { 0 };
-        let told = self.told.iter().zip(&self.rooms);
+        let told = self.listed.iter().zip(&self.card_details);
         let mut articles = told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
-        self.alike.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
+        self.cause_sizes.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
     }
 
     /// Returns the scenes that are not listed, and how many of them are accepted.

@@ -40,7 +40,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
 fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
     static NONE: std::sync::LazyLock<WrongSteps> = std::sync::LazyLock::new(|| WrongSteps::new(StepChoice::None));
     let (rules, steps) = (Rules::Both, &*NONE);
-    Check { scene, trace, outcome, explanations, rules, steps, audit: false, tables: false, looks_like: None }
+    Check { scene, trace, outcome, explanations, rules, steps, audit: false, tables: false, other_file_kind: None }
 }
 
 fn text_of(scene: &Scene, trace: &[u8]) -> String {
@@ -122,7 +122,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
     let outcome =
         replay::judge(&scene, &b""[..], &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
-    let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
+    let check = Check { other_file_kind: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
     let case = Case { check, scene: &scene, evidence: None, mistake_run: None, hints: Hints::Full, has_trace: true };
     let html = case.page("mine.bin");
     assert!(html.contains("is not a trace: it is empty") && !html.contains("fair rules"), "{html}");
@@ -220,7 +220,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         steps: &steps,
         audit: false,
         tables: false,
-        looks_like: None,
+        other_file_kind: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), mistake_run: Some(&what_if), hints, has_trace: false };
     let card = Card::for_case(&case, 3).and_then(|card| Card::from_stored(&card.to_stored()));

@@ -1,17 +1,17 @@
 //! Describes what the scenes in which a program crashes or exceeds a limit have in common.
-use fosssim_findings::located_failure::{Content, LocatedFailure};
+use fosssim_findings::located_failure::{LocatedFailure, SceneFeature};
 
-/// The maximum number of further contents that are named if the scenes can't distinguish them from the first one.
-const MAX_NAMED_CONTENTS: usize = 2;
+/// The maximum number of further features that are named if the scenes can't distinguish them from the first one.
+const MAX_NAMED_FEATURES: usize = 2;
 
 /// Describes what the failing scenes have in common, with counts, and how the program ended in the first of them.
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure {
         failure: failing,
-        contents,
+        features: contents,
         failed,
-        scenes_with_contents: with,
-        scenes_without_contents: without,
+        scenes_with_features: with,
+        scenes_without_features: without,
         first,
         step,
     } = found;
@@ -28,7 +28,7 @@ pub fn describe_located(found: &LocatedFailure) -> String {
         {record}."
     );
     if !others.is_empty() {
-        let (shown, more) = others.split_at(others.len().min(MAX_NAMED_CONTENTS));
+        let (shown, more) = others.split_at(others.len().min(MAX_NAMED_FEATURES));
         let shown: Vec<String> = shown.iter().map(describe_place).collect();
         let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
         text += &format!(" Equally likely: those {}{more}.", shown.join("; those "));
@@ -36,10 +36,10 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     text
 }
 
-/// Describes the contents of a scene as a relative clause, such as `in which the failsafe moves a zone (held by: a
+/// Describes a feature of a scene as a relative clause, such as `in which the failsafe moves a zone (held by: a
 /// half-plane)`.
-fn describe_place(content: &Content) -> String {
-    let Content { family, value } = content;
+fn describe_place(content: &SceneFeature) -> String {
+    let SceneFeature { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));
     let is_step = family.ends_with(" step");
     format!("{} {family}{}", if is_step { "with" } else { "in which" }, value.unwrap_or_default())
@@ -52,19 +52,19 @@ mod tests {
 
     #[test]
     fn counts_and_ties_are_told() {
-        let content = |family: &'static str, value: Option<[&'static str; 2]>| Content {
+        let content = |family: &'static str, value: Option<[&'static str; 2]>| SceneFeature {
             family: family.into(),
             value: value.map(|words| words.map(Into::into)),
         };
         let found = LocatedFailure {
             failure: FailureKind::Crash,
-            contents: vec![
+            features: vec![
                 content("the failsafe moves a zone", None),
                 content("a hybrid step", Some(["zones", "one"])),
             ],
             failed: 24,
-            scenes_with_contents: 24,
-            scenes_without_contents: 61,
+            scenes_with_features: 24,
+            scenes_without_features: 61,
             first: "GeometricTests/chain".to_owned(),
             step: 14,
         };
@@ -76,9 +76,9 @@ mod tests {
         );
         let some = LocatedFailure {
             failure: FailureKind::Several,
-            contents: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
+            features: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed: 7,
-            scenes_with_contents: 9,
+            scenes_with_features: 9,
             step: 0,
             ..found
         };

@@ -102,13 +102,13 @@ impl Attack {
             left_trace: None,
         };
         for line in source.lines().map_while(|line| line.strip_prefix("// ")) {
-            let (key, value) = line.split_once(": ").ok_or_else(|| format!("no key in: {line}"))?;
+            let (key, value) = line.split_once(": ").ok_or_else(|| format!("{line:?} is not KEY: VALUE"))?;
             match key {
                 "promise" => attack.promise = value.into(),
                 "expect" => attack.expected_ends = value.split(" or ").map(parse_expected).collect(),
                 "policy" if value == "tools" => attack.policy = Policy::Tools,
                 "wall" => {
-                    let milliseconds = value.parse().map_err(|_| format!("no number: {value}"))?;
+                    let milliseconds = value.parse().map_err(|_| format!("wall must be a number, not {value:?}"))?;
                     attack.wall = Some(Duration::from_millis(milliseconds));
                 }
                 "needs" => {
@@ -120,7 +120,7 @@ impl Attack {
             }
         }
         if !attack.promise.ends_with('.') || attack.expected_ends.is_empty() {
-            return Err("it needs a promise (a sentence) and an expectation".into());
+            return Err("an attack needs a promise (a sentence) and an expectation".into());
         }
         Ok(attack)
     }

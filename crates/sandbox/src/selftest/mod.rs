@@ -40,7 +40,7 @@ const PERMIT_VARIABLE: &str = "FOSSSIM_ATTACK";
 /// grader's process group.
 const GRADER_VARIABLE: &str = "FOSSSIM_GRADER";
 const GROUP_VARIABLE: &str = "FOSSSIM_GRADER_GROUP";
-/// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended the attack.
+/// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have killed the attack.
 const DENIED_END: RunEnd = RunEnd::Exited(77);
 /// Attacks are built without optimization, because it would remove stores and loops that seem to have no effect.
 const COMPILER_FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
@@ -53,7 +53,7 @@ const MAX_TRACE_BYTES: u64 = 1 << 20;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PromiseState {
     /// The promise is kept: the attack failed, and left nothing behind.
-    Held,
+    Kept,
     /// The promise is broken. The value describes how.
     Broken(String),
     /// The promise could not be tested on this machine. The value is the reason.
@@ -85,8 +85,8 @@ impl PromiseTable {
     }
 
     /// Returns the number of promises that are kept.
-    pub fn count_held(&self) -> usize {
-        self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
+    pub fn count_kept(&self) -> usize {
+        self.promises.iter().filter(|promise| promise.state == PromiseState::Kept).count()
     }
 }
 
@@ -203,10 +203,10 @@ impl TestSetup<'_> {
             // These runs share a supervisor, so anything that a run leaves in it would affect the next run.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected_ends.iter().any(|expected| expected.matches(&outcome.ended)) {
-                return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
+                return Err(broken(format!("in a first run the attack {}{}", outcome.ended, last_output(&outcome))));
             }
             if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
-                return Err(broken("it printed a secret in a first run".into()));
+                return Err(broken("the attack printed a secret in a first run".into()));
             }
             running = self.backend.start(&job).map_err(|e| fault(&e))?;
         }
@@ -222,23 +222,23 @@ impl TestSetup<'_> {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
         if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
-            return Err(broken("it printed a secret".into()));
+            return Err(broken("the attack printed a secret".into()));
         }
         if !decoy.is_alive() {
-            return Err(broken("it killed another process".into()));
+            return Err(broken("the attack killed another process".into()));
         }
         let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
         if let Some(difference) = before.difference(&after) {
-            return Err(broken(format!("it changed the host: {difference}")));
+            return Err(broken(format!("the attack changed the host: {difference}")));
         }
         check_left_trace(attack, &folder).map_err(broken)?;
-        decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
-        Ok(PromiseState::Held)
+        decoy.clear().map_err(|error| broken(format!("the attack's folder cannot be removed: {error}")))?;
+        Ok(PromiseState::Kept)
     }
 
     /// Returns the built attack. It is built again only if a source file or the name of the compiler has changed.
     fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
-        let source = ATTACK_SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
+        let source = ATTACK_SOURCES.get_file(format!("{}.c", attack.name)).ok_or("the attack's source is missing")?;
         let header = ATTACK_SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
         let mut digest = blake3::Hasher::new();
         digest
@@ -260,7 +260,8 @@ impl TestSetup<'_> {
             Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
-            return Err(format!("it does not compile here: {}", text.lines().take(3).collect::<Vec<_>>().join(" ")));
+            let lines = text.lines().take(3).collect::<Vec<_>>();
+            return Err(format!("the attack does not compile here: {}", lines.join(" ")));
         }
         std::fs::rename(&fresh, &program).map_err(said)?;
         Ok(program)

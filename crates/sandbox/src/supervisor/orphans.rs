@@ -1,4 +1,4 @@
-//! Ends the processes that a supervisor may have left behind when it was lost.
+//! Kills the processes that a supervisor may have left behind when it was lost.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use super::{
     user_slot,
 };
 
-/// Ends the processes that a lost supervisor may have left behind. These are the processes in its child's session, and
-/// those of the child's own user. If there was a process namespace, it has ended all of its processes by itself, and
-/// its session numbers are not valid here.
-pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
+/// Kills the processes that a lost supervisor may have left behind. These are the processes in its child's session, and
+/// those of the child's own user. If there was a process namespace, its processes were killed with it, and its session
+/// numbers are not valid here.
+pub(crate) fn kill_orphans(session: Option<i32>, user: Option<u32>) {
     const MAX_ATTEMPTS: u32 = 1000;
     // The lock on the user ended with the supervisor, so another run may already have this user.
     let slot = user.and_then(user_slot::retake_slot);

@@ -48,7 +48,7 @@ fn probe() -> io::Result<Probe> {
     match try_group() {
         Ok((controls, ends)) => {
             probe.group_controls = controls.into_iter().map(str::to_string).collect();
-            probe.group_ends = ends;
+            probe.group_can_kill = ends;
         }
         Err(error) => probe.group = Some(error.to_string()),
     }
@@ -61,7 +61,7 @@ fn probe() -> io::Result<Probe> {
     match sys::fork()? {
         Fork::Child => {
             drop(parent);
-            let tried = try_walls(probe, user);
+            let tried = try_layers(probe, user);
             // The result is written as to a file, because the filter allows no socket calls. This fails if the parent
             // has ended, which does not matter.
             let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
@@ -110,7 +110,7 @@ fn try_execution() -> (Option<String>, bool) {
     }
 }
 
-/// Tests whether a control group can end a child. Returns the limits of the group, and whether it can.
+/// Tests whether a control group can kill a child. Returns the limits of the group, and whether it can.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::create(&RunOrder::default())?;
     let mut entrances = group.entrances()?;
@@ -170,8 +170,8 @@ fn try_namespaces() -> Option<String> {
     tried().unwrap_or_else(|error| Some(error.to_string()))
 }
 
-/// Sets up one layer after the other, and notes which of them work.
-fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
+/// Sets up one layer after the other, and records which of them work.
+fn try_layers(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.limits =
         failure_reason(sys::set_limit(Resource::Core, 0).and_then(|()| sys::set_limit(Resource::Fsize, 1 << 30)));
     if let Some(user) = user {

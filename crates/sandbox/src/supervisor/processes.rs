@@ -1,4 +1,4 @@
-//! Finds the processes below this one in `/proc`, and ends them.
+//! Finds the processes below this one in `/proc`, and kills them.
 
 use std::{
     collections::BTreeSet,
@@ -116,15 +116,15 @@ pub(super) struct RemainingProcesses {
     /// The number of these processes.
     pub(super) count: u32,
     /// Whether the kernel itself blocks all of them (state D). A program cannot cause this.
-    pub(super) held: bool,
+    pub(super) blocked: bool,
 }
 
-/// Ends all descendants of this process and all processes of `user`, and reaps them. With `alone`, this process is the
+/// Kills all descendants of this process and all processes of `user`, and reaps them. With `alone`, this process is the
 /// first one in a process namespace that contains only processes of the run.
 ///
 /// All processes are stopped before any is killed, because a fork bomb would otherwise start a new process for each
 /// that has ended. `reaped` is called for every process that was reaped.
-pub(super) fn end_all(
+pub(super) fn kill_all(
     user: Option<u32>,
     alone: bool,
     mut reaped: impl FnMut(sys::ReapedProcess),
@@ -134,7 +134,7 @@ pub(super) fn end_all(
     let start = Instant::now();
     loop {
         if alone {
-            // A single command ends all processes in any state. If no child is left, there are no other processes.
+            // A single command kills all processes in any state. If no child is left, there are no other processes.
             if sys::kill_namespace() && reap_all(&mut reaped) {
                 return RemainingProcesses::default();
             }
@@ -149,8 +149,8 @@ pub(super) fn end_all(
             return RemainingProcesses::default();
         }
         if start.elapsed() > MAX_WAIT {
-            let held = victims.iter().filter_map(|pid| read_process(*pid)).all(|stat| stat.state == b'D');
-            return RemainingProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
+            let blocked = victims.iter().filter_map(|pid| read_process(*pid)).all(|stat| stat.state == b'D');
+            return RemainingProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), blocked };
         }
         std::thread::sleep(Duration::from_millis(1));
     }

@@ -1,4 +1,4 @@
-//! Supervises a single run: starts it, watches it, ends it, and reports.
+//! Supervises a single run: starts it, watches it, stops it, and reports.
 
 use std::{
     ffi::CString,
@@ -198,7 +198,7 @@ impl Run {
         })
     }
 
-    /// Watches the run until the program has ended or must end, ends all processes, and reports. Returns `None` if the
+    /// Watches the run until the program has ended or must end, kills all processes, and reports. Returns `None` if the
     /// grader has ended.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
@@ -208,14 +208,14 @@ impl Run {
         let watched = self.watch();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
-            // If processes remain, they are ended one by one.
+            // If processes remain, they are killed one by one.
             let _ = group.kill();
         }
         if main_status.is_none() {
             // The process number is valid until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
-        let left = processes::end_all(user, self.order.layers.namespaces, |process| {
+        let left = processes::kill_all(user, self.order.layers.namespaces, |process| {
             if process.pid == child {
                 main_status = Some(process.status);
             }
@@ -257,8 +257,8 @@ impl Run {
         // If the kernel itself blocks a process, the host is at fault. Otherwise the program is at fault for a process
         // that did not end.
         self.record_cause(
-            left.count > 0 && !left.held,
-            RunEnd::Violation { call: "none, but it left processes that did not end".into() },
+            left.count > 0 && !left.blocked,
+            RunEnd::Violation { call: "none, but the program left processes that did not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.record_cause(out_of_memory, RunEnd::MemoryLimit);
@@ -276,7 +276,7 @@ impl Run {
             stderr_bytes: self.stderr.bytes.len() as u64,
             stdout_truncated: self.stdout.truncated,
             stderr_truncated: self.stderr.truncated,
-            survivors: if left.held { left.count } else { 0 },
+            survivors: if left.blocked { left.count } else { 0 },
         };
         Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
     }

@@ -25,7 +25,7 @@ pub trait Number:
 pub type FusedDouble = f64;
 
 impl Number for FusedDouble {
-    #[expect(clippy::disallowed_methods, reason = "a student's compiler fuses what it likes")]
+    #[expect(clippy::disallowed_methods, reason = "a student's compiler may fuse operations")]
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self.mul_add(factor, addend)
     }

@@ -70,7 +70,7 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
     let slip = IndexSlip::for_student(student, kind);
     let body = |index: usize| {
         let place = |list: &[f64]| {
-            if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { vector_at(list, index) }
+            if slip.uses_particle_number { Vec2::new(list[index], list[index + 1]) } else { vector_at(list, index) }
         };
         let start = frame.transform_point(place(q_start), vector_at(q_start, pair.particle));
         let end = frame.transform_point(place(q_end), vector_at(q_end, pair.particle));
@@ -164,7 +164,7 @@ fn contact_distance(motion: &PairMotion) -> f64 {
 /// The lists that a program reads at a wrong index for pairs of a kind.
 struct IndexSlip {
     /// Whether positions are read at the particle's number, as if each particle had one coordinate.
-    is_single: bool,
+    uses_particle_number: bool,
     radius: Option<RadiusSlip>,
 }
 
@@ -178,7 +178,7 @@ enum RadiusSlip {
 
 impl IndexSlip {
     fn for_student(student: Student, kind: usize) -> Self {
-        let (is_single, radius) = match student.mistake_in(&[FORMULA_AREAS[kind]]) {
+        let (uses_particle_number, radius) = match student.mistake_in(&[FORMULA_AREAS[kind]]) {
             Some(
                 Mistake::ParticleParticlePositionIndex
                 | Mistake::ParticleEdgePositionIndex
@@ -190,7 +190,7 @@ impl IndexSlip {
             }
             _ => (false, None),
         };
-        Self { is_single, radius }
+        Self { uses_particle_number, radius }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Makes MP4 films with an external program: pictures are sent to ffmpeg through a pipe.
 //!
 //! ffmpeg writes a temporary file, so that the output appears only when it is complete. If ffmpeg reads nothing for a
-//! minute, it is ended. Only one of its arguments contains a name that the user chose: the output, and it begins with
+//! minute, it is killed. Only one of its arguments contains a name that the user chose: the output, and it begins with
 //! `file:`.
 use crate::{
     cli::output::Output,
@@ -31,7 +31,7 @@ const ENCODERS: [(&str, &[&str]); 4] = [
     ("mpeg4", &["-q:v", "3"]),
 ];
 
-/// The time after which a program that reads nothing is ended.
+/// The time after which a program that reads nothing is killed.
 const STUCK_TIME: Duration = Duration::from_secs(60);
 
 /// The maximum number of bytes of the program's messages that are kept.
@@ -121,7 +121,7 @@ impl Ffmpeg {
         });
         let watch = Arc::new(EncoderWatch::default());
         let child = Arc::new(Mutex::new(child));
-        end_when_stuck(&child, &watch);
+        kill_when_stuck(&child, &watch);
         Ok(Self { child, pipe, messages: words, encoder_watch: watch, output: Some(output) })
     }
 
@@ -156,7 +156,7 @@ impl Ffmpeg {
         self.encoder_watch.is_over.store(true, Ordering::Relaxed);
         let words = self.messages.take().and_then(|words| words.join().ok()).unwrap_or_default();
         if self.encoder_watch.is_given_up.load(Ordering::Relaxed) {
-            bail!("ffmpeg read no picture for {} seconds and was ended", STUCK_TIME.as_secs());
+            bail!("ffmpeg read no frame for {} seconds and was killed", STUCK_TIME.as_secs());
         }
         if !status.success() {
             bail!("ffmpeg failed ({status}): {words}");
@@ -177,8 +177,8 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// Starts a thread that ends the program if it reads nothing for too long. The thread ends together with the program.
-fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
+/// Starts a thread that kills the program if it reads nothing for too long. The thread ends together with the program.
+fn kill_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {
         let (mut seen, mut since) = (0, Instant::now());

@@ -48,13 +48,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let overlay = &arguments.overlay;
     let overlay = overlay.as_ref().map(|trace| motion::read_motion(&scene.scene, trace, picks)).transpose()?;
     if main.pictures == 0 {
-        let why = main.stopped.map_or_else(String::new, |why| format!(": {why}"));
+        let why = main.stop_reason.map_or_else(String::new, |why| format!(": {why}"));
         bail!("there is nothing to draw of {}{why}", main.name);
     }
     let stopped: Vec<String> = [Some(&main), overlay.as_ref()]
         .into_iter()
         .flatten()
-        .filter_map(|motion| Some(format!("{} ends early: {}\n", motion.name, motion.stopped.as_ref()?)))
+        .filter_map(|motion| Some(format!("{} ends early: {}\n", motion.name, motion.stop_reason.as_ref()?)))
         .collect();
     let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
     let mut reel = DrawableMotion::new(&scene.scene, main, overlay, options, picks);

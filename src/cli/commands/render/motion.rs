@@ -54,7 +54,7 @@ pub(super) struct Motion {
     /// The rectangle that contains all positions.
     pub(super) extent: Extent,
     /// The reason why the motion ends before the scene does.
-    pub(super) stopped: Option<String>,
+    pub(super) stop_reason: Option<String>,
     rows: BufReader<SpooledTempFile>,
     width: usize,
 }
@@ -110,7 +110,7 @@ impl<'a> MotionWriter<'a> {
         let mut file = self.file.into_inner().map_err(std::io::IntoInnerError::into_error).context(context)?;
         file.rewind().context(context)?;
         let (rows, width) = (BufReader::new(file), 2 * self.scene.particles.len());
-        Ok(Motion { name, pictures: self.pictures, extent: self.extent, stopped, rows, width })
+        Ok(Motion { name, pictures: self.pictures, extent: self.extent, stop_reason: stopped, rows, width })
     }
 }
 

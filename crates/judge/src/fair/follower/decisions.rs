@@ -1,7 +1,7 @@
 //! Judges a step's decisions and contacts.
 use super::Follower;
 use crate::{
-    contacts::{key, logged_key},
+    contacts::{logged_key, pair_key},
     fair::contact,
     finding::FindingDetail,
 };
@@ -42,7 +42,7 @@ impl Follower<'_> {
         };
         // A decision that is counted as wrong is not also counted as borderline.
         if decision.collides() != is_expected && self.judgement.total() == findings {
-            self.judgement.note_borderline(self.pass, pair, decision.collides());
+            self.judgement.add_borderline(self.pass, pair, decision.collides());
         }
         if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
             self.borderline_calls.push(call);
@@ -50,8 +50,8 @@ impl Follower<'_> {
         decision
     }
 
-    /// Returns the decision about a call whose logged polynomials exclude an impact, if the reference's own
-    /// polynomials, without losses, give `by_own`.
+    /// Returns the decision about a call whose logged polynomials exclude an impact, and for which the reference's own
+    /// polynomials, without losses, give the decision `by_own`.
     pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, has_losses: false });
@@ -64,7 +64,7 @@ impl Follower<'_> {
 
     /// Counts decisions that change because of lost coefficients. Their cause is the factor, not round-off. With some
     /// factors the library keeps coefficients that it drops from the reference's polynomials; then nothing is lost, and
-    /// the reference's decision does not count.
+    /// the reference's decision is not used.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
         if !own.has_losses {
             return;
@@ -108,7 +108,7 @@ impl Follower<'_> {
 
     /// Returns the logged impulse for the pair's decision.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
-        let index = self.contacts.indices_of(key(pair)?).find(|index| !self.used_impulses[*index])?;
+        let index = self.contacts.indices_of(pair_key(pair)?).find(|index| !self.used_impulses[*index])?;
         self.used_impulses[index] = true;
         Some(self.records.end.impulses[index])
     }

@@ -161,7 +161,7 @@ impl<'a> Follower<'a> {
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
     }
 
-    /// Ends the step, which left the reference in `state`.
+    /// Ends the step. `state` is the reference's end state.
     pub fn finish(&mut self, state: &State) {
         self.judgement.decisions = self.decisions.len() as u64;
         self.compare_pass_counts();
@@ -256,7 +256,7 @@ impl StepController for Follower<'_> {
                 let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.motion = Some(CallMotion { motion, has_right_approach: false });
             }
-            self.note_course_form(pair, q_start, q_end, index);
+            self.record_course_form(pair, q_start, q_end, index);
             return;
         }
         let count = polynomials.len();

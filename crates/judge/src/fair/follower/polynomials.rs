@@ -68,12 +68,12 @@ impl<'a> Follower<'a> {
             // After an error that moves the particles, their positions are unknown.
             let is_reached = is_known || !self.has_error[self.pass_part()];
             let pended = self.judgement.pending_count();
-            let said = self.judgement.note_evidence(&expected, &logged, result, is_reached);
-            let hangs = self.judgement.pending_count() > pended;
-            match said {
+            let judgement = self.judgement.record_evidence(&expected, &logged, result, is_reached);
+            let is_pending = self.judgement.pending_count() > pended;
+            match judgement {
                 PolynomialJudgement::Right => {}
                 PolynomialJudgement::RightForm => has_right_approach = true,
-                PolynomialJudgement::Hangs => {
+                PolynomialJudgement::DependsOnFactor => {
                     has_right_approach |= expected.other_form(number).is_some() && self.judgement.right_form.is_some();
                     is_right &= is_reached;
                 }
@@ -83,8 +83,8 @@ impl<'a> Follower<'a> {
                 }
             }
             // Positions after a response have the round-off of the response.
-            self.judgement.has_endless_search |=
-                self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
+            self.judgement.has_finding_after_response |=
+                self.is_moved(pair) && (is_pending || matches!(judgement, PolynomialJudgement::Wrong(_)));
         }
         self.call.motion = Some(CallMotion { motion: seen, has_right_approach });
         is_right
@@ -145,11 +145,11 @@ impl<'a> Follower<'a> {
         self.add_finding(wrong_polynomial_finding(logged, expected.polynomial(number), mismatch));
     }
 
-    /// Notes the form of an approach polynomial that is identical to the reference's.
-    pub(super) fn note_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
+    /// Records the form of an approach polynomial that is identical to the reference's.
+    pub(super) fn record_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
         if pair.kind == PairKind::ParticleEdge && self.judgement.course_form.is_none() {
             let expected = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end).polynomials();
-            self.judgement.note_course_form(&expected, &self.logged_polynomial(pair, index, 3));
+            self.judgement.record_course_form(&expected, &self.logged_polynomial(pair, index, 3));
         }
     }
 

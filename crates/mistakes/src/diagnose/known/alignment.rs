@@ -1,5 +1,5 @@
-//! Finds records that are missing throughout. Every later record is then at the place of another record, so every step
-//! looks wrong.
+//! Finds a record that a program leaves out in every step. Each later record then takes the place of another one, so
+//! every step looks wrong.
 use super::{resimulate::resimulate, row_explanation};
 use crate::diagnose::{
     Explanation,
@@ -19,8 +19,8 @@ pub(super) fn find_missing_record(scene: &Scene, scan: &Scan) -> Option<Explanat
         }
         let steps = count_aligned_steps(scene, layout, &scan.outline.opening, row)?;
         // If nothing moves in a scene, every record is right, so only the number of records counts.
-        let tells = !scan.wrong_steps.is_empty() || scan.outline.records == Some(expected);
-        tells.then(|| row_explanation(row, (steps, steps)))
+        let is_evidence = !scan.wrong_steps.is_empty() || scan.outline.records == Some(expected);
+        is_evidence.then(|| row_explanation(row, (steps, steps)))
     })
 }
 

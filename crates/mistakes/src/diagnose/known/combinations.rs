@@ -84,15 +84,15 @@ impl<'a> Search<'a> {
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.reproduced_share(&set);
         while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
-            let (row, progress, others) = self.next(&set, best)?;
+            let (row, progress, others) = self.find_next_row(&set, best)?;
             set.push(row);
             best = progress;
             alike.push(others);
         }
-        if set.len() < 2 || best < self.full_share() || !self.is_needed(&set) {
+        if set.len() < 2 || best < self.full_share() || !self.needs_all_rows(&set) {
             return None;
         }
-        let samples = self.count_confirmed(&set)?;
+        let samples = self.count_steps_if_confirmed(&set)?;
         let is_variant = |row: &&'static Row| row.kind == RowKind::Variant;
         if set.iter().chain(alike.last().into_iter().flatten()).any(is_variant) {
             return None;
@@ -112,11 +112,12 @@ impl<'a> Search<'a> {
     }
 
     /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
-    /// larger part of a step, but all mistakes together reproduce all of it. Unwritten functions come first, then one
-    /// mistake with such functions, then two mistakes, or `None` if two disjoint sets reproduce everything.
+    /// larger part of a step, but all mistakes together reproduce all of it. Sets of unwritten functions are tried
+    /// first, then one mistake with such functions, then two mistakes. Returns `None` if two disjoint sets reproduce
+    /// everything.
     fn find_combination(&self) -> Option<RowCombination> {
-        let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
-        let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_asked).collect();
+        let is_candidate = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
+        let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_candidate).collect();
         let mut empty = list_subsets(&self.empty_stage_rows());
         let most = empty.len().min(MAX_SETS);
         empty.truncate(most);
@@ -127,7 +128,7 @@ impl<'a> Search<'a> {
                 rows: rows.clone(),
                 equivalent_rows: same_as,
                 rival_rows: Vec::new(),
-                samples: self.count_confirmed(rows)?,
+                samples: self.count_steps_if_confirmed(rows)?,
             });
         }
         let with = |set: &Vec<&'static Row>, row| set.iter().copied().chain([row]).collect();
@@ -155,7 +156,7 @@ impl<'a> Search<'a> {
             }
         }
         let first = found.first()?.clone();
-        let samples = self.count_confirmed(&first)?;
+        let samples = self.count_steps_if_confirmed(&first)?;
         let is_in = |set: &[&Row], row: &Row| set.iter().any(|other| other.id == row.id);
         let instead = |own: &&'static Row| -> Vec<&'static Row> {
             let others: Vec<&Row> = first.iter().copied().filter(|row| row.id != own.id).collect();
@@ -163,8 +164,8 @@ impl<'a> Search<'a> {
             alike.flatten().filter(|row| !is_in(&first, row)).copied().collect()
         };
         let same_as: Vec<Vec<&'static Row>> = first.iter().map(instead).collect();
-        let is_told = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
-        is_told.then(|| RowCombination { rows: first, equivalent_rows: same_as, rival_rows: Vec::new(), samples })
+        let is_unique = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
+        is_unique.then(|| RowCombination { rows: first, equivalent_rows: same_as, rival_rows: Vec::new(), samples })
     }
 
     /// Returns whether the rows reproduce everything, and none can be omitted.
@@ -172,8 +173,8 @@ impl<'a> Search<'a> {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reproduced_share(&self.trials.program(set), probe) >= 1.0
             && self.reproduced_share(set) >= self.full_share()
-            && self.is_needed(set)
-            && self.count_confirmed(set).is_some()
+            && self.needs_all_rows(set)
+            && self.count_steps_if_confirmed(set).is_some()
     }
 
     /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of detections
@@ -234,17 +235,17 @@ impl<'a> Search<'a> {
             let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();
             all.windows(2).any(|two| two == [true, true])
         });
-        let is_asked = |row: &&Row| match row.mistake {
+        let is_candidate = |row: &&Row| match row.mistake {
             Mistake::ParticleParticleEmpty | Mistake::ParticleEdgeEmpty | Mistake::HalfPlaneEmpty => !logs_zeros,
             Mistake::ParticleParticleZero | Mistake::ParticleEdgeZero | Mistake::HalfPlaneZero => logs_zeros,
             _ => is_empty_stage(row),
         };
-        applicable_rows(self.scene).filter(is_asked).collect()
+        applicable_rows(self.scene).filter(is_candidate).collect()
     }
 
     /// Returns the row that extends the reproduced part beyond `reached` the most, the new share, and other rows that
     /// reach the same.
-    fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
+    fn find_next_row(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable_rows(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
@@ -270,7 +271,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns whether no row can be omitted.
-    fn is_needed(&self, set: &[&'static Row]) -> bool {
+    fn needs_all_rows(&self, set: &[&'static Row]) -> bool {
         (0..set.len()).all(|index| {
             let without: Vec<&Row> =
                 set.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, row)| *row).collect();
@@ -279,7 +280,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the number of wrong steps if the set reproduces all of them and all right ones within the allowed work.
-    fn count_confirmed(&self, set: &[&'static Row]) -> Option<u64> {
+    fn count_steps_if_confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.scan.right_steps.iter().chain(&self.scan.wrong_steps) {

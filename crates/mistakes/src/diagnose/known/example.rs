@@ -95,7 +95,7 @@ fn state_example(
 }
 
 fn count_value(number: usize) -> Vec<f64> {
-    #[expect(clippy::cast_precision_loss, reason = "a count of things in memory")]
+    #[expect(clippy::cast_precision_loss, reason = "a count of values in memory")]
     let number = number as f64;
     vec![number]
 }

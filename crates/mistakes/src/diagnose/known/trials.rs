@@ -34,7 +34,7 @@ impl<'a> Trials<'a> {
             round_off,
             step_work,
             used_work: Cell::new(0),
-            remaining_work: &reference.trials,
+            remaining_work: &reference.trial_work,
         }
     }
 

@@ -111,7 +111,7 @@ impl<'a> PlacedPair<'a> {
     }
 
     /// Returns whether the bodies do not approach each other.
-    pub fn is_parting(&self) -> bool {
+    pub fn is_separating(&self) -> bool {
         let State { positions, velocities } = self.geometry.before;
         let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
         let distance = |x: &[f64]| length(self.nearest_point(x) - vector_at(x, self.numbers()[0]));

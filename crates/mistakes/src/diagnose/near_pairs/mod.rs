@@ -33,7 +33,7 @@ const MAX_WORK: usize = 4_000_000;
 /// its row.
 const MAX_CHANCE_PROBABILITY: f64 = 2e-3;
 
-/// The number of wrong pairs among which one may lack a trait that the others have in common.
+/// One in this many wrong pairs may lack a trait that the others have in common.
 const PAIRS_PER_EXCEPTION: u64 = 20;
 
 /// The maximum number of reported traits, if several distinguish pairs equally well.
@@ -95,8 +95,8 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
-        // The probability that as many randomly chosen pairs all have the trait. Pairs of a scene resemble each other,
-        // so the larger group counts only as much as the smaller one.
+        // The probability that this many randomly chosen pairs all have the trait. Pairs of a scene resemble each
+        // other, so the larger group counts only as much as the smaller one.
         let chance: f64 =
             (1..=(wrong - exceptions).min(right)).map(|i| (with + i) as f64 / (right + i) as f64).product();
         PAIRS_PER_EXCEPTION * exceptions <= wrong
@@ -105,11 +105,11 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     };
     let telling: Vec<_> = counts.filter(is_telling).collect();
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
-    let mut told: Vec<(TraitVariant, u64, u64)> = Vec::new();
+    let mut reported: Vec<(TraitVariant, u64, u64)> = Vec::new();
     for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
         // Of a row's variants, the strictest one is reported.
-        told.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
-        told.push(one);
+        reported.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
+        reported.push(one);
     }
     let as_told = |(one, exceptions, right): (TraitVariant, u64, u64)| PairTrait {
         description: one.describe(),
@@ -117,12 +117,12 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
         right_pairs: right,
         exceptions,
     };
-    told.into_iter().take(MAX_TRAITS).map(as_told).collect()
+    reported.into_iter().take(MAX_TRAITS).map(as_told).collect()
 }
 
 /// Adds the pairs of all traces together for the explanations of a program.
-pub(super) fn merge_explanations(told: &mut [Explanation], traces: &[&[Explanation]]) {
-    for one in told.iter_mut() {
+pub(super) fn merge_explanations(reported: &mut [Explanation], traces: &[&[Explanation]]) {
+    for one in reported.iter_mut() {
         let ExplanationTopic::Pairs(sum) = &mut one.topic else { continue };
         let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.topic {
             ExplanationTopic::Pairs(wrong) => Some(wrong),

@@ -103,9 +103,9 @@ traits! {
     NO_AXIS NO_NUMBER "a particle is fixed" "fixed is 1"
         |pair, _, _| pair_particles(pair).any(|particle| pair.geometry.scene.particles[particle].fixed);
     NO_AXIS NO_NUMBER "the bodies move apart or rest, although only their positions matter"
-        "(v1 - v2) . n is not positive" |pair, _, _| pair.is_parting();
+        "(v1 - v2) . n is not positive" |pair, _, _| pair.is_separating();
     NO_AXIS NO_NUMBER "the bodies approach, although only their positions matter"
-        "(v1 - v2) . n is positive" |pair, _, _| !pair.is_parting();
+        "(v1 - v2) . n is positive" |pair, _, _| !pair.is_separating();
     NO_AXIS NO_NUMBER "the bodies were apart at the start of the scene, as if those positions were used"
         "The boxes at time 0 do not overlap" |pair, _, _| !pair.is_near(&pair.geometry.start_positions);
     NO_AXIS TRAIT_STEPS "the bodies were still apart shortly before, as if old positions were used"

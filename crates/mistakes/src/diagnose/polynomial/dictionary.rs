@@ -2,7 +2,7 @@
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
-    extras::{HALF_PLANE_EXTRAS, extra_letters},
+    extra_letters::{HALF_PLANE_EXTRAS, extra_letters},
     formulas::{Formula, Letter, product},
 };
 use std::borrow::Cow;

@@ -69,10 +69,10 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         explanations.push(explain_shared(&covered, &key));
         open = rest;
     }
-    let (hopeless, open): (Vec<WrongPolynomial>, Vec<WrongPolynomial>) =
+    let (unknown, open): (Vec<WrongPolynomial>, Vec<WrongPolynomial>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(WrongPolynomial::explanation));
-    explanations.extend(summarize_unexplained(&hopeless));
+    explanations.extend(summarize_unexplained(&unknown));
     explanations.extend(explain_missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     explanations
@@ -177,8 +177,8 @@ pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialD
     format!("{subject:?}/{}/{:016x}", guess.claim_key(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
-/// Returns the known mistakes in the formulas of this kind, or in passing them on, that give the logged polynomial in
-/// all samples.
+/// Returns the known mistakes that give the logged polynomial in all samples: mistakes in the formulas of this kind, or
+/// in passing their results on.
 fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::all_of_kind(kind).iter().position(|&other| other == study.subject) else {
@@ -255,21 +255,21 @@ fn explain_nearly_right(suspect: &WrongPolynomial) -> Option<Explanation> {
 }
 
 /// Returns one explanation with all unexplained polynomials.
-fn summarize_unexplained(hopeless: &[WrongPolynomial]) -> Option<Explanation> {
-    let first = hopeless.first()?;
+fn summarize_unexplained(unknown: &[WrongPolynomial]) -> Option<Explanation> {
+    let first = unknown.first()?;
     let lines = |suspect: &WrongPolynomial| {
-        let subject = (hopeless.len() > 1).then_some(suspect.study.subject);
+        let subject = (unknown.len() > 1).then_some(suspect.study.subject);
         suspect.study.count_differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        details: take_distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
-        samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
+        details: take_distinct(unknown.iter().flat_map(lines), MAX_OTHER_KEYS),
+        samples: unknown.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::find_smallest_example(&first.study).map(|(_, example)| example),
-        claims: take_distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
+        claims: take_distinct(unknown.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
         ..Explanation::with_topic(
             Explanation::UNEXPLAINED,
             ExplanationTopic::Polynomials {
-                subjects: hopeless.iter().map(|suspect| suspect.study.subject).collect(),
+                subjects: unknown.iter().map(|suspect| suspect.study.subject).collect(),
                 found: PolynomialEvidence::Nothing,
             },
         )
@@ -277,7 +277,7 @@ fn summarize_unexplained(hopeless: &[WrongPolynomial]) -> Option<Explanation> {
 }
 
 /// Returns the key of general guesses that reproduces all samples of the most polynomials; on a tie, the likeliest. A
-/// polynomial's own likeliest guess counts for that polynomial. `None` if no key reproduces all samples of a
+/// polynomial's own likeliest guess counts for that polynomial. Returns `None` if no key reproduces all samples of a
 /// polynomial.
 fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();

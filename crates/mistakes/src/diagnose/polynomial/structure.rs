@@ -66,7 +66,7 @@ fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 /// Returns whether all logged numbers are single-precision and close to the expected ones.
 fn is_single_precision(case: &Case) -> bool {
     let single = |value: f64| {
-        #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]
+        #[expect(clippy::cast_possible_truncation, reason = "the test is whether truncation changes the number")]
         let rounded = value as f32;
         f64::from(rounded) == value
     };

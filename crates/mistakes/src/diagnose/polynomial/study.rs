@@ -22,7 +22,7 @@ const MAX_CASES: usize = 1200;
 /// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBE_COUNT: usize = 12;
 
-/// The number of right samples for each of which one may contradict a guess because of round-off.
+/// One in this many right samples may contradict a guess because of round-off.
 const SAMPLES_PER_EXCEPTION: usize = 50;
 
 /// The relative difference below which ratios to the expected coefficients are equal. The limit allows for the rounding
@@ -73,7 +73,7 @@ pub(super) struct Candidate {
 }
 
 impl<'a> PolynomialStudy<'a> {
-    /// Collects the logged values of a polynomial, or `None` if no sample is wrong.
+    /// Collects the logged values of a polynomial. Returns `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
         let mut cases: Vec<Case<'a>> = samples
@@ -91,7 +91,7 @@ impl<'a> PolynomialStudy<'a> {
                 finite.then_some(Case { sample, logged, inputs, expected, is_right: right, scale: 1.0 })
             })
             .collect();
-        forgive_small_scales(&mut cases);
+        accept_small_scales(&mut cases);
         if cases.iter().all(|case| case.is_right) {
             return None;
         }
@@ -108,9 +108,9 @@ impl<'a> PolynomialStudy<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or
-    /// without one, or otherwise with any positive scale, or `None` if it reproduces fewer than half of the wrong
-    /// samples. The flag is set if another scale was needed.
+    /// Returns the number of samples that a predicted polynomial reproduces: with the submission's usual scale, without
+    /// a scale, or otherwise with any positive scale. The flag is set in the last case. Returns `None` if fewer than
+    /// half of the wrong samples are reproduced.
     pub fn count_predicted(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -298,7 +298,7 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
 
 /// Treats wrong samples as right if they match with the usual scale of right samples. With a small scale, the course's
 /// library drops coefficients that matter, so the scale cannot be fitted to each sample.
-fn forgive_small_scales(cases: &mut [Case]) {
+fn accept_small_scales(cases: &mut [Case]) {
     let scales = cases.iter().filter(|case| case.is_right).filter_map(|case| fit_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };
     for case in cases.iter_mut().filter(|case| !case.is_right) {

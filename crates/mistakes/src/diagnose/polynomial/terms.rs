@@ -13,7 +13,8 @@ use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 /// The maximum number of wrong samples in a fit, which also uses half as many right samples.
 const MAX_ROWS: usize = 240;
 
-/// The number of samples with the coefficient below which samples without it are used as well.
+/// The minimum number of samples in a fit that have the coefficient. If there are fewer, samples without it are used as
+/// well.
 const MIN_ROWS: usize = 12;
 
 /// Weights are multiples of this step.
@@ -45,13 +46,13 @@ enum CoefficientEdit {
     Unknown,
 }
 
-/// The guesses about one coefficient, the likeliest first. There is at least one.
-struct FormulaGuess {
+/// The possible edits of one coefficient, the likeliest first. There is at least one.
+struct CoefficientEdits {
     power: usize,
     edits: Vec<(CoefficientEdit, f64)>,
 }
 
-impl FormulaGuess {
+impl CoefficientEdits {
     fn edit(&self) -> &CoefficientEdit {
         &self.edits[0].0
     }
@@ -65,7 +66,7 @@ pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
     let fitting = TermFit::new(study, formula, reading);
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
-    let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
+    let guesses: Vec<CoefficientEdits> = wrong.map(|power| fitting.explain(power)).collect();
     // A polynomial without an explained coefficient is not a candidate.
     guesses.iter().find(|guess| !matches!(guess.edit(), CoefficientEdit::Unknown))?;
     let holds = |index: usize| {
@@ -73,7 +74,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
         case.logged.len() <= formula.degree + 1
             && (0..=formula.degree).all(|power| {
                 let guess = guesses.iter().find(|guess| guess.power == power);
-                let predicted = fitting.predict(index, power, guess.map(FormulaGuess::edit));
+                let predicted = fitting.predict(index, power, guess.map(CoefficientEdits::edit));
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
@@ -81,7 +82,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     Some(Candidate {
         guess: Guess::Coefficients {
             powers: guesses.iter().map(|guess| guess.power).collect(),
-            wrong: fitting.wrong_coefficient(&guesses),
+            wrong: fitting.classify_coefficient(&guesses),
         },
         details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
         forms: fitting.forms(&guesses),
@@ -142,7 +143,7 @@ impl<'a> TermFit<'a> {
     }
 
     /// Returns the explanations of a coefficient that hold for all samples.
-    fn explain(&self, power: usize) -> FormulaGuess {
+    fn explain(&self, power: usize) -> CoefficientEdits {
         let terms =
             self.find_term_changes(power).into_iter().map(|(changes, cost)| (CoefficientEdit::Terms(changes), cost));
         let factor = self.find_constant_factor(power).map(|(factor, cost)| (CoefficientEdit::Factor(factor), cost));
@@ -151,7 +152,7 @@ impl<'a> TermFit<'a> {
         if edits.is_empty() {
             edits.push((CoefficientEdit::Unknown, UNKNOWN_COST));
         }
-        FormulaGuess { power, edits }
+        CoefficientEdits { power, edits }
     }
 
     /// Returns the constant factor by which the coefficient is wrong, if there is one.
@@ -200,7 +201,7 @@ impl<'a> TermFit<'a> {
         });
         let mut found = Vec::new();
         prepared.find_supports(&target, |support| {
-            let Some(changes) = snap(support) else { return false };
+            let Some(changes) = snap_weights(support) else { return false };
             let edit = CoefficientEdit::Terms(changes);
             let holds = self.explains_all(power, &edit);
             if let (true, CoefficientEdit::Terms(changes)) = (holds, edit) {
@@ -268,8 +269,8 @@ impl<'a> TermFit<'a> {
     }
 }
 
-/// Rounds weights to multiples of [`WEIGHT_STEP`], or `None` if they are not close to multiples.
-fn snap(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
+/// Rounds weights to multiples of [`WEIGHT_STEP`]. Returns `None` if they are not close to multiples.
+fn snap_weights(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
     support
         .iter()
         .map(|&(product, weight)| {
@@ -288,13 +289,13 @@ impl TermFit<'_> {
         (expected, expected + change)
     }
 
-    fn wrong_coefficient(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
+    fn classify_coefficient(&self, guesses: &[CoefficientEdits]) -> CoefficientGuess {
         let [guess] = guesses else { return CoefficientGuess::Several };
         match guess.edit() {
             CoefficientEdit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             CoefficientEdit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
             CoefficientEdit::Factor(_) => CoefficientGuess::Factor,
-            // An unexplained coefficient does not make a guess of its own (see `candidate`).
+            // An unexplained coefficient alone is not a guess (see `candidate`).
             CoefficientEdit::Unknown => CoefficientGuess::Several,
             CoefficientEdit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(guess.power, change) {
@@ -309,7 +310,7 @@ impl TermFit<'_> {
     }
 
     /// Returns all polynomials that follow from the guesses, the likeliest first.
-    fn forms(&self, guesses: &[FormulaGuess]) -> Vec<Vec<PolynomialDetail>> {
+    fn forms(&self, guesses: &[CoefficientEdits]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
             let of_edit = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);
             let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(of_edit).collect();
@@ -330,7 +331,7 @@ impl TermFit<'_> {
         }
     }
 
-    fn details(&self, guess: &FormulaGuess) -> Vec<PolynomialDetail> {
+    fn details(&self, guess: &CoefficientEdits) -> Vec<PolynomialDetail> {
         let as_well = |(edit, _): &(CoefficientEdit, f64)| match edit {
             CoefficientEdit::Terms(changes) => {
                 let weights = changes.iter().map(|change| self.weight(guess.power, *change)).collect();

@@ -28,7 +28,7 @@ impl Capture {
     pub fn new(collision: &Collision) -> Self {
         let records = collision.handling().records;
         let logs_impulses = records.impulses != ImpulseList::Empty;
-        Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
+        Self { logs_impulses, has_mid: records.has_polynomials, ..Self::default() }
     }
 
     /// Returns the place of a polynomial: the pair, the pass, and the number within the pair. Returns `None` if the
@@ -39,7 +39,7 @@ impl Capture {
         (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
     }
 
-    fn note_event(&mut self, bit: u32) {
+    fn record_event(&mut self, bit: u32) {
         self.event_bits |= 1 << bit;
     }
 }
@@ -64,10 +64,10 @@ impl Observer for Capture {
             Stage::Simple | Stage::ContinuousTime => {}
             Stage::Impulses { round } => {
                 if round > 0 {
-                    self.note_event(9 + round.min(3));
+                    self.record_event(9 + round.min(3));
                 }
             }
-            Stage::Geometric { round } => self.note_event(13 + round.min(3)),
+            Stage::Geometric { round } => self.record_event(13 + round.min(3)),
         }
     }
 
@@ -82,7 +82,7 @@ impl Observer for Capture {
                     Stage::Impulses { .. } => 3,
                     Stage::Geometric { .. } => 6,
                 };
-                self.note_event(stage + detection.pair.kind.code().unsigned_abs());
+                self.record_event(stage + detection.pair.kind.code().unsigned_abs());
             }
         }
     }
@@ -102,12 +102,12 @@ impl Observer for Capture {
     }
 
     fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
-        self.note_event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
+        self.record_event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
     }
 
     fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         if zones.len() > 1 {
-            self.note_event(21);
+            self.record_event(21);
         }
     }
 

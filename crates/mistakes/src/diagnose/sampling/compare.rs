@@ -80,8 +80,8 @@ impl LoggedNumbers {
         numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
     }
 
-    /// Returns the memory of the numbers, in bytes.
-    pub fn bytes(&self) -> usize {
+    /// Returns the memory that the numbers use, in bytes.
+    pub fn memory_size(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
             + 8 * (self.polynomials.coefficients.len() + self.polynomials.coefficient_ends.len())

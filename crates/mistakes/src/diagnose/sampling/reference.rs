@@ -11,7 +11,7 @@ pub struct Reference<'a> {
     simulation: Simulation,
     budget: Budget<'a>,
     /// The number of polynomials that programs with mistakes may still compute for this explanation.
-    pub trials: Cell<u64>,
+    pub trial_work: Cell<u64>,
 }
 
 /// The maximum number of polynomials that programs with mistakes may compute for one explanation. Unusual steps of root
@@ -23,7 +23,7 @@ impl<'a> Reference<'a> {
     /// Creates the reference for a trace of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::OnDemand);
-        Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(MAX_TRIAL_WORK) }
+        Self { simulation, budget: Budget::new(scene, false), trial_work: Cell::new(MAX_TRIAL_WORK) }
     }
 
     /// Returns the end state of a step from `before`, or `None` if it has no result, or the budget is used up.

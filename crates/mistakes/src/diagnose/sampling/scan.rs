@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of kept steps of each sort, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
-/// The number of similar wrong steps that are all kept. Of further ones, only some are kept.
+/// The number of similar wrong steps that are all kept. Only some of the further ones are kept.
 const MAX_SIMILAR_WRONG: u32 = 8;
 const SIMILAR_SAMPLING_RATE: u32 = 16;
 /// The number of similar right steps that are kept.
@@ -71,7 +71,7 @@ pub struct Scan {
 }
 
 impl Scan {
-    /// Removes right steps down to the maximum number.
+    /// Removes right steps above the maximum number.
     pub fn limit_right_steps(&mut self) {
         self.right_steps.truncate(MAX_RIGHT);
     }
@@ -160,7 +160,7 @@ impl Scanner {
             self.step_context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
         });
         let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
-        self.memory += kept.bytes();
+        self.memory += kept.memory_size();
         if difference.is_some() { self.scan.wrong_steps.push(kept) } else { self.scan.right_steps.push(kept) }
     }
 
@@ -241,15 +241,15 @@ impl Scanner {
 }
 
 impl KeptStep {
-    fn bytes(&self) -> usize {
-        let mid = self.records.mid.as_ref().map_or(0, LoggedNumbers::bytes);
-        16 * self.before.positions.len() + mid + self.records.end.bytes()
+    fn memory_size(&self) -> usize {
+        let mid = self.records.mid.as_ref().map_or(0, LoggedNumbers::memory_size);
+        16 * self.before.positions.len() + mid + self.records.end.memory_size()
     }
 }
 
 /// Returns whether all numbers have single precision.
 fn are_single_precision(numbers: &[f64]) -> bool {
-    #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
+    #[expect(clippy::cast_possible_truncation, reason = "the test is whether the conversion loses anything")]
     let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();
     numbers.iter().all(exact)
 }

@@ -82,7 +82,7 @@ impl Outline {
                 self.padded_records += u64::from(!frame.is_unchanged);
                 if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
                     let logged = LoggedNumbers::from(&*frame);
-                    self.opening_memory += logged.bytes();
+                    self.opening_memory += logged.memory_size();
                     self.opening.push(logged);
                 }
                 true
@@ -104,7 +104,7 @@ pub struct StepReader<'a> {
     is_whole: bool,
     /// The number of the next step, or `None` after the end.
     next_step: Option<u32>,
-    /// The records of the last step that was read. Before the first step, the first record of the trace is here, if
+    /// The records of the last step that was read. Before the first step, it holds the first record of the trace, if
     /// there is one.
     pub frames: StepFrames,
     /// Facts about the trace in addition to its steps.

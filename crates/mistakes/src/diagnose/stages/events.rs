@@ -30,10 +30,10 @@ pub(super) struct Hit {
 #[derive(Debug, Clone)]
 pub(super) struct PassFacts {
     pub(super) stage: Stage,
-    /// The index of its first polynomial.
-    pub(super) first: usize,
+    /// The index of the pass's first polynomial in the step.
+    pub(super) first_polynomial: usize,
     /// The end positions of particles when the pass begins.
-    pub(super) end: Vec<f64>,
+    pub(super) end_positions: Vec<f64>,
 }
 
 /// A zone that the reference moves.
@@ -41,7 +41,7 @@ pub(super) struct PassFacts {
 pub(super) struct ZoneFacts {
     pub(super) round: u32,
     pub(super) particles: Vec<usize>,
-    pub(super) half_plane: bool,
+    pub(super) has_half_plane: bool,
 }
 
 /// Events that the reference reports in addition to its records.
@@ -51,7 +51,7 @@ struct Events {
     passes: Vec<PassFacts>,
     zones: Vec<ZoneFacts>,
     detections: Vec<(Pair, usize)>,
-    polynomials: usize,
+    polynomial_count: usize,
     /// The approach polynomials of edges in the other accepted form, each with its index.
     other_forms: Vec<(usize, Vec<f64>)>,
 }
@@ -74,20 +74,20 @@ impl StepEvents<'_> {
         if let Some(other) = expected.other_form(APPROACH_INDEX).map(values)
             && other != values(expected.polynomial(APPROACH_INDEX))
         {
-            self.events.other_forms.push((self.events.polynomials + APPROACH_INDEX, other));
+            self.events.other_forms.push((self.events.polynomial_count + APPROACH_INDEX, other));
         }
     }
 }
 
 impl Observer for StepEvents<'_> {
     fn begin_pass(&mut self, pass: Pass) {
-        let first = self.events.polynomials;
-        self.events.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
+        let first = self.events.polynomial_count;
+        self.events.passes.push(PassFacts { stage: pass.stage, first_polynomial: first, end_positions: Vec::new() });
     }
 
     fn observe_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
         if let Some(pass) = self.events.passes.last_mut() {
-            pass.end = q_end.to_vec();
+            pass.end_positions = q_end.to_vec();
         }
     }
 
@@ -98,13 +98,13 @@ impl Observer for StepEvents<'_> {
             let (pass, place) = (heard.passes.len().saturating_sub(1), heard.detections.len());
             heard.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
         }
-        heard.detections.push((detection.pair, heard.polynomials));
-        heard.polynomials += detection.polynomials.len();
+        heard.detections.push((detection.pair, heard.polynomial_count));
+        heard.polynomial_count += detection.polynomials.len();
     }
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         let particles = zone.particles.iter().map(|&particle| particle as usize).collect();
-        self.events.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
+        self.events.zones.push(ZoneFacts { round, particles, has_half_plane: zone.half_plane });
     }
 }
 
@@ -180,7 +180,7 @@ impl StepFacts {
 
     /// Returns the number of polynomials of a pass.
     pub(super) fn pass_size(&self) -> usize {
-        self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
+        self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first_polynomial)
     }
 
     /// Returns the expected and the actual mid state.
@@ -206,15 +206,15 @@ impl StepFacts {
         is_whole.then(|| (first / size, (all - first) / size))
     }
 
-    /// Returns whether a logged pass (from 0) describes the motion from the start of the step to the positions `end`,
-    /// judged by the pairs whose index in the pass `is_asked` accepts.
-    pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
+    /// Returns whether a logged pass (from 0) describes the motion from the start of the step to the positions `end`.
+    /// Only the pairs that `selects` accepts are compared.
+    pub(super) fn fits_motion(&self, scene: &Scene, pass: usize, end: &[f64], selects: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
             return false;
         }
-        let of_pass = self.detections.iter().take_while(|(_, first)| *first < size);
-        of_pass.filter(|(pair, _)| is_asked(*pair)).all(|(pair, first)| {
+        let pass_detections = self.detections.iter().take_while(|(_, first)| *first < size);
+        pass_detections.filter(|(pair, _)| selects(*pair)).all(|(pair, first)| {
             let expected = BoundedPairMotion::for_pair(scene, *pair, &self.before.positions, end).polynomials();
             (0..expected.count()).all(|number| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];

@@ -23,7 +23,7 @@ struct Change {
     /// The ratio to the expected value along the contact vector, or `None` if the expected value is zero.
     ratio: Option<f64>,
     /// Whether the component perpendicular to the contact vector also changed.
-    is_across: bool,
+    changes_across: bool,
     is_right: bool,
 }
 
@@ -50,7 +50,7 @@ impl Responses {
                         changes.push((ChangedQuantity { kind: hit.pair.kind, body, quantity }, change));
                     }
                 }
-                let is_nothing = |change: &Change| !change.is_across && change.ratio.is_none_or(|ratio| ratio == 0.0);
+                let is_nothing = |one: &Change| !one.changes_across && one.ratio.is_none_or(|ratio| ratio == 0.0);
                 if !facts.is_continuous() && changes.iter().all(|(_, change)| is_nothing(change)) {
                     all.unresolved += 1;
                     continue;
@@ -79,7 +79,7 @@ impl Responses {
             .filter(|(_, wrong)| !wrong.is_empty())
             .collect();
         if wrong.is_empty() {
-            return explain_many(facts).or_else(|| self.explain_unresolved());
+            return explain_several_contacts(facts).or_else(|| self.explain_unresolved());
         }
         let mut kinds: Vec<PairKind> = wrong.keys().map(|changed| changed.kind).collect();
         kinds.dedup();
@@ -88,10 +88,10 @@ impl Responses {
             _ => None,
         };
         let whose = || wrong.keys().copied().collect();
-        let what = if wrong.values().flatten().all(|change| !change.is_across && change.ratio == Some(0.0)) {
+        let what = if wrong.values().flatten().all(|change| !change.changes_across && change.ratio == Some(0.0)) {
             let all = wrong.len() == changes.keys().filter(|changed| kinds.contains(&changed.kind)).count();
             if all { WrongResponses::Nothing } else { WrongResponses::Unchanged(whose()) }
-        } else if wrong.values().flatten().any(|change| change.is_across) {
+        } else if wrong.values().flatten().any(|change| change.changes_across) {
             WrongResponses::Across(whose())
         } else {
             WrongResponses::Amount(whose())
@@ -148,11 +148,11 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.mid_states()) else { return true };
     facts.is_continuous()
         || (hit.pass + 1..passes)
-            .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
+            .all(|pass| facts.fits_motion(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
 
 /// Returns the explanation of steps with several contacts, if each contact alone is right but the state is not.
-fn explain_many(facts: &[StepFacts]) -> Option<Explanation> {
+fn explain_several_contacts(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong
             && facts.is_continuous()
@@ -177,7 +177,7 @@ fn measure_change(particle: usize, quantity: Quantity, states: [&State; 3], u: V
             let ratio = along / ours.dot(&u);
             if along.abs() <= small { 0.0 } else { ratio }
         }),
-        is_across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
+        changes_across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
         is_right: length(theirs - ours) <= small.max(RATIO_TOLERANCE * length(ours)),
     }
 }
@@ -189,6 +189,6 @@ fn change_detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> Stage
         Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= RATIO_TOLERANCE => Amount::Right,
         _ => Amount::Ratio(ratios(&along)),
     };
-    let across = wrong.iter().any(|change| change.is_across);
+    let across = wrong.iter().any(|change| change.changes_across);
     StageDetail::Change { changed, amount, across, wrong: wrong.len(), of }
 }

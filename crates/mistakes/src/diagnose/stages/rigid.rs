@@ -45,13 +45,13 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
         .or_else(|| explain_rounds(scene, &wrong))
 }
 
-/// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
-/// which are right within round-off, and small coefficients depend on that.
+/// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds.
+/// These are right up to round-off, on which small coefficients depend.
 fn may_be_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.mid_states().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = polynomial_index_after(facts, 0) / facts.pass_size();
     let differs = facts.right_polynomials < polynomial_index_after(facts, 1).min(facts.expected.end.polynomials.len());
-    differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
+    differs && facts.fits_motion(scene, pass, &middle.state.positions, |_| true)
 }
 
 /// Returns the index of the first polynomial after `passes` passes of the geometric part.
@@ -70,7 +70,7 @@ fn explain_first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explan
     }
     let is_prediction = |facts: &&&StepFacts| {
         let pass = polynomial_index_after(facts, 0) / facts.pass_size();
-        facts.detects(scene, pass, &facts.prediction.positions, |_| true)
+        facts.fits_motion(scene, pass, &facts.prediction.positions, |_| true)
     };
     let positions = if seen.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
     Some(new_observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
@@ -85,7 +85,7 @@ fn explain_positions_before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Opt
         let pass = polynomial_index_after(facts, 1) / facts.pass_size();
         facts.right_polynomials < polynomial_index_after(facts, 2)
             && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > ROUND_OFF_LIMIT * (1.0 + ours.abs()))
-            && facts.detects(scene, pass, middle, |_| true)
+            && facts.fits_motion(scene, pass, middle, |_| true)
     };
     let count = wrong.iter().filter(is_so).count();
     let fault = StageFault::ZonePositions(WrongPositions::BeforeFailsafe);
@@ -131,7 +131,7 @@ fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
         }
         let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
         for zone in facts.zones.iter().filter(|zone| zone.round == last) {
-            let group = ParticleGroup { particles: zone.particles.clone(), half_plane: zone.half_plane };
+            let group = ParticleGroup { particles: zone.particles.clone(), has_half_plane: zone.has_half_plane };
             if group.must_stop(scene) {
                 return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
             }
@@ -166,15 +166,15 @@ impl ZoneMotions {
             if !first.is_visible(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
                 continue;
             }
-            let fate =
+            let result =
                 if first.is_visible(zone) { first.zone_result(zone) } else { ZoneResult::Wrong(WrongZones::NotMerged) };
-            self.results.push(fate);
-            match fate {
-                ZoneResult::Wrong(WrongZones::KeepVelocities) => self.note_kept_velocities(&first, zone),
+            self.results.push(result);
+            match result {
+                ZoneResult::Wrong(WrongZones::KeepVelocities) => self.record_kept_velocities(&first, zone),
                 ZoneResult::Bent if zone.must_stop(scene) => self.bent_stops += 1,
                 ZoneResult::Bent | ZoneResult::Rigid => {
                     let is_one = first.zone_contacts(zone).len() < 2;
-                    if fate == ZoneResult::Bent {
+                    if result == ZoneResult::Bent {
                         *(if is_one { &mut self.bent_single_zones } else { &mut self.bent_large_zones }) += 1;
                     }
                     self.measured.measure_motion(scene, &first, zone);
@@ -184,7 +184,7 @@ impl ZoneMotions {
         }
     }
 
-    fn note_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &ParticleGroup) {
+    fn record_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &ParticleGroup) {
         for &one in &zone.particles {
             let (was, is) = (vector_at(&first.middle.velocities, one), vector_at(&first.end.velocities, one));
             if length(was) > ROUND_OFF_LIMIT {
@@ -195,8 +195,8 @@ impl ZoneMotions {
         }
     }
 
-    fn count_results(&self, fate: ZoneResult) -> usize {
-        self.results.iter().filter(|one| **one == fate).count()
+    fn count_results(&self, result: ZoneResult) -> usize {
+        self.results.iter().filter(|one| **one == result).count()
     }
 
     fn explain(&self) -> Option<Explanation> {
@@ -242,11 +242,11 @@ impl ZoneMotions {
 /// The ratios of actual to expected motion of zones that need not stop.
 #[derive(Default)]
 struct MotionErrors {
-    shifts: Vec<f64>,
+    shift_ratios: Vec<f64>,
     has_side_shift: bool,
-    turns: Vec<f64>,
+    turn_ratios: Vec<f64>,
     is_bent: bool,
-    velocities: Vec<f64>,
+    velocity_ratios: Vec<f64>,
     has_other_velocity: bool,
 }
 
@@ -258,7 +258,7 @@ impl MotionErrors {
         if length(should) > ROUND_OFF_LIMIT {
             let ratio = does.dot(&should) / should.dot(&should);
             self.has_side_shift |= !are_near(does, ratio * should);
-            self.shifts.push(ratio);
+            self.shift_ratios.push(ratio);
         } else {
             self.has_side_shift |= length(does) > ROUND_OFF_LIMIT;
         }
@@ -269,11 +269,11 @@ impl MotionErrors {
             if !is_once_round {
                 // If a rotation exceeds half a turn, only the remainder is visible, which shows neither the angle nor
                 // the direction.
-                self.turns.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
+                self.turn_ratios.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
             } else if right.abs() > MIN_TURN {
-                self.turns.push(angle / right);
+                self.turn_ratios.push(angle / right);
             } else if angle.abs() > MIN_TURN {
-                self.turns.push(f64::NAN);
+                self.turn_ratios.push(f64::NAN);
             }
         } else {
             self.is_bent = true;
@@ -289,31 +289,31 @@ impl MotionErrors {
             if length(motion) > ROUND_OFF_LIMIT {
                 let ratio = velocity.dot(&motion) / motion.dot(&motion);
                 self.has_other_velocity |= !are_near(velocity, ratio * motion);
-                self.velocities.push(ratio);
+                self.velocity_ratios.push(ratio);
             }
         }
     }
 
     fn describe(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
         let (mut wrong, mut details) = (Vec::new(), Vec::new());
-        if self.has_side_shift || !are_one(&self.shifts) {
+        if self.has_side_shift || !all_equal_one(&self.shift_ratios) {
             wrong.push(WrongMotion::Center);
-            details.push(match common_value(&self.shifts) {
-                Some(_) if !self.has_side_shift => StageDetail::CenterMotion(ratios(&self.shifts)),
+            details.push(match common_value(&self.shift_ratios) {
+                Some(_) if !self.has_side_shift => StageDetail::CenterMotion(ratios(&self.shift_ratios)),
                 _ => StageDetail::CenterDirection,
             });
         }
-        if !self.is_bent && !are_one(&self.turns) {
-            wrong.push(describe_turn(&self.turns));
-            if self.turns.iter().all(|ratio| ratio.is_finite()) {
-                details.push(StageDetail::Rotations(ratios(&self.turns)));
+        if !self.is_bent && !all_equal_one(&self.turn_ratios) {
+            wrong.push(describe_turn(&self.turn_ratios));
+            if self.turn_ratios.iter().all(|ratio| ratio.is_finite()) {
+                details.push(StageDetail::Rotations(ratios(&self.turn_ratios)));
             }
         }
         if self.has_other_velocity {
             wrong.push(WrongMotion::Velocities);
-        } else if !are_one(&self.velocities) {
+        } else if !all_equal_one(&self.velocity_ratios) {
             wrong.push(WrongMotion::Speeds);
-            details.push(StageDetail::Velocities(ratios(&self.velocities)));
+            details.push(StageDetail::Velocities(ratios(&self.velocity_ratios)));
         }
         (wrong, details)
     }
@@ -335,7 +335,7 @@ fn describe_turn(ratios: &[f64]) -> WrongMotion {
     }
 }
 
-fn are_one(ratios: &[f64]) -> bool {
+fn all_equal_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= RATIO_TOLERANCE)
 }
 

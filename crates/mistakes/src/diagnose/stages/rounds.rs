@@ -87,7 +87,7 @@ fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation
             continue;
         }
         let prediction = &facts.prediction.positions;
-        let is_again = |pass| facts.detects(scene, pass, prediction, |_| true);
+        let is_again = |pass| facts.fits_motion(scene, pass, prediction, |_| true);
         let is_right = facts.right_polynomials >= 2 * facts.pass_size();
         if is_right || !(1..passes).all(is_again) || find_difference(prediction, &middle.state.positions).is_none() {
             return None;
@@ -157,9 +157,9 @@ impl SecondPass {
             let own = pair_particles(scene, *pair);
             let touches =
                 |other: &Pair| other != pair && pair_particles(scene, *other).iter().any(|one| own.contains(one));
-            let leads_to = |positions: &[f64]| facts.detects(scene, 1, positions, |other| other == *pair);
+            let leads_to = |positions: &[f64]| facts.fits_motion(scene, 1, positions, |other| other == *pair);
             self.contacts += 1;
-            if leads_to(&second.end) {
+            if leads_to(&second.end_positions) {
                 self.right += usize::from(!first.iter().any(touches));
             } else if leads_to(&facts.prediction.positions) {
                 self.unresolved += 1;

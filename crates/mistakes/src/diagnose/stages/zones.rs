@@ -23,24 +23,24 @@ pub(super) struct ParticleGroup {
     /// The particles' indices, ascending.
     pub(super) particles: Vec<usize>,
     /// Whether the set contains a half-plane.
-    pub(super) half_plane: bool,
+    pub(super) has_half_plane: bool,
 }
 
 impl ParticleGroup {
     fn from_particles(mut particles: Vec<usize>, half_plane: bool) -> Self {
         particles.sort_unstable();
         particles.dedup();
-        Self { particles, half_plane }
+        Self { particles, has_half_plane: half_plane }
     }
 
     fn union(groups: &[&Self]) -> Self {
         let particles = groups.iter().flat_map(|group| group.particles.iter().copied()).collect();
-        Self::from_particles(particles, groups.iter().any(|group| group.half_plane))
+        Self::from_particles(particles, groups.iter().any(|group| group.has_half_plane))
     }
 
     /// Returns whether the zone must end where it started: it contains a half-plane or a fixed particle.
     pub(super) fn must_stop(&self, scene: &Scene) -> bool {
-        self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
+        self.has_half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
 
     fn contains(&self, other: &Self) -> bool {
@@ -89,7 +89,8 @@ impl<'a> FirstRound<'a> {
             return None;
         }
         let zones = facts.zones.iter().filter(|zone| zone.round == round);
-        let zones = zones.map(|zone| ParticleGroup::from_particles(zone.particles.clone(), zone.half_plane)).collect();
+        let zones =
+            zones.map(|zone| ParticleGroup::from_particles(zone.particles.clone(), zone.has_half_plane)).collect();
         let contacts = facts.hits.iter().filter(|hit| hit.pass == first).map(|hit| {
             let is_half_plane = hit.pair.kind == PairKind::ParticleHalfPlane;
             ParticleGroup::from_particles(pair_particles(scene, hit.pair), is_half_plane)
@@ -102,7 +103,7 @@ impl<'a> FirstRound<'a> {
     /// Returns whether the end of the step shows the positions of the group after the first round.
     pub(super) fn is_visible(&self, group: &ParticleGroup) -> bool {
         let is_own = |pair| pair_particles(self.scene, pair).iter().all(|one| group.particles.contains(one));
-        self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
+        self.rounds == 1 || self.facts.fits_motion(self.scene, self.second, &self.end.positions, is_own)
     }
 
     /// Returns whether a zone's particles end in the right positions, so that the zone proves nothing.
@@ -215,7 +216,7 @@ impl<'a> FirstRound<'a> {
             // A particle with the expected position was not omitted.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
-                && [false, zone.half_plane]
+                && [false, zone.has_half_plane]
                     .iter()
                     .any(|flag| leads_there(&ParticleGroup::from_particles(part.clone(), *flag)))
             {
@@ -223,7 +224,7 @@ impl<'a> FirstRound<'a> {
                 return Some(ZoneResult::Wrong(wrong));
             }
             if !foreign.is_empty() {
-                let with = ParticleGroup::from_particles([part.clone(), foreign.clone()].concat(), zone.half_plane);
+                let with = ParticleGroup::from_particles([part.clone(), foreign.clone()].concat(), zone.has_half_plane);
                 if leads_there(&with) {
                     return Some(ZoneResult::Wrong(WrongZones::Others));
                 }

@@ -1,5 +1,5 @@
 //! Explains programs with several mistakes on the probe scenes.
-use super::naming::is_in_other_words;
+use super::naming::has_same_meaning;
 use super::{Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, probe_scenes};
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::assignments::Assignment;
@@ -23,7 +23,7 @@ fn a_mistake_beside_another_is_told_once() {
         explain(&scene, &student::record_trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
     });
     for list in &explained {
-        let twice = |one: &&Explanation| rows.iter().any(|row| is_in_other_words(one, row));
+        let twice = |one: &&Explanation| rows.iter().any(|row| has_same_meaning(one, row));
         let named = list.iter().filter(|one| one.key == rows[0].id).chain(list.iter().filter(twice)).count();
         assert!(named <= 1, "{list:#?}");
     }

@@ -196,7 +196,7 @@ impl Strips {
 
 /// Returns the row at height `y`. A greater height never gives a lower row.
 fn row_of(y: f64, density: f64) -> i64 {
-    #[expect(clippy::cast_possible_truncation, reason = "what is too large is in the last row, which has room")]
+    #[expect(clippy::cast_possible_truncation, reason = "values that are too large go to the last row")]
     let row = (y * density) as i64;
     row.clamp(FIRST_ROW, LAST_ROW)
 }

@@ -1,7 +1,7 @@
-//! Renders grades for people at a terminal. Faults come first and the result comes last, because a terminal shows the
+//! Renders grades as text for the terminal. Faults come first and the result comes last, because a terminal shows the
 //! last lines.
 
-mod closing;
+mod closing_lines;
 mod scenes;
 mod table;
 
@@ -85,14 +85,14 @@ impl Text<'_> {
         if !is_one_of_several || details.is_empty() {
             let _ = writeln!(text, "{}", self.verdict(grade));
         }
-        *text += &closing::render(self, grade, details.is_empty());
+        *text += &closing_lines::render(self, grade, details.is_empty());
         text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::text(small, self.style))));
         text.push('\n');
     }
 
     /// Renders one line with the submission's name, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
-        let look = if grade.verdict.is_accepted() { TextStyle::Good } else { TextStyle::Bad };
+        let look = if grade.verdict.is_accepted() { TextStyle::Right } else { TextStyle::Wrong };
         let (name, verdict) = (to_one_line(&grade.submission), grade.verdict.name());
         let reached = match grade.points {
             Some(reached) => format_score(reached, grade.max_points) + &describe_extra_points(grade),
@@ -170,9 +170,9 @@ fn describe_rules(grade: &Grade) -> String {
 /// Returns the style in which a scene's verdict is shown.
 const fn verdict_style(verdict: Verdict) -> TextStyle {
     match verdict {
-        Verdict::Accepted => TextStyle::Good,
+        Verdict::Accepted => TextStyle::Right,
         Verdict::NotRun => TextStyle::Notice,
-        _ => TextStyle::Bad,
+        _ => TextStyle::Wrong,
     }
 }
 

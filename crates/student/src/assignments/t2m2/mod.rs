@@ -1,7 +1,7 @@
 //! Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
 pub mod catalogue;
 mod edits;
-pub mod extras;
+pub mod extra_letters;
 pub mod formulas;
 pub mod ingredients;
 mod inputs;

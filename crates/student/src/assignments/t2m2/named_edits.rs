@@ -154,7 +154,7 @@ named_edits! {
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)
         => "The overlap is a signed distance, which is right only on one side of the boundary"
-        => "the polynomial is -(dx.n) t + r |n| + (p-x).n, a difference of lengths, expected that of squares";
+        => "the polynomial is -(dx.n) t + r |n| + (p-x).n, a difference of lengths instead of squares";
     NO_SPEED_FACTOR "no-speed-factor" [PH] 2.5: Formula(Subject::HalfPlaneApproach, approach_without_speed)
         => "The approach does not take the side of the half-plane into account: it is right only on one side"
         => "the factor (dx.n) is missing";

@@ -1,6 +1,6 @@
 //! Finds the letters of a polynomial's readings by name.
 use super::{
-    extras::extra_letters,
+    extra_letters::extra_letters,
     formulas::{Letter, readings},
 };
 use fosssim_findings::explanation::Reading;

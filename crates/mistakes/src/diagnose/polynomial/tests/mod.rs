@@ -485,8 +485,8 @@ fn small_slips_in_quadratics_are_named() {
     overlap("term-factor", &weight(1, "x21.d21", -1.0, -2.0), &|lists| lists[0][1] *= 0.5);
     overlap("term-sign", &weight(2, "d21.d21", 1.0, -1.0), &|lists| lists[0][0] *= -1.0);
     overlap("cut", &is(PolynomialDetail::LastOnly(2)), &|lists| lists[0][0] = 0.0);
-    let is_little = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Factor { power: 0, factor } if (factor - 1.0 - 1e-9).abs() < 1e-14);
-    overlap("coefficient-factor", &is_little, &|lists| lists[0][2] *= 1.0 + 1e-9);
+    let is_tiny = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Factor { power: 0, factor } if (factor - 1.0 - 1e-9).abs() < 1e-14);
+    overlap("coefficient-factor", &is_tiny, &|lists| lists[0][2] *= 1.0 + 1e-9);
     overlap("coefficient-sign", &is(PolynomialDetail::Factor { power: 0, factor: -1.0 }), &|lists| lists[0][2] *= -1.0);
     overlap("term-sign", &weight(0, "x21.d21", 1.0, -1.0), &|lists| lists[1][1] *= -1.0);
     overlap("term-factor", &weight(1, "d21.d21", -2.0, -1.0), &|lists| lists[1][0] *= 2.0);
