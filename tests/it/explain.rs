@@ -274,6 +274,8 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
     let again = schemas::valid("explain", &again.stdout);
     assert_eq!(again["common"]["key"], "pe-linear-one-sh");
     assert_eq!(again["smallest"][0]["scene"], std::fs::read_to_string(workspace.path("small.xml")).expect("a scene"));
+    let run = workspace.run(["shrink", program, "small.xml", "--step", "2"]);
+    assert!(run.code == Some(2) && run.err().contains("the last step of small.xml is 1"), "{}", run.shown());
     let run = workspace.run(["shrink", "./fosssim-sample", "small.xml"]);
     assert!(run.code == Some(0) && run.out().contains("Nothing is wrong"), "{}", run.shown());
 }

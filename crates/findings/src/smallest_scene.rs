@@ -45,13 +45,6 @@ impl SmallestScene {
         (self.steps, self.bodies, self.xml.len())
     }
 
-    /// Returns whether the scene has another content and another cause than all scenes in `found`.
-    pub fn is_new(&self, found: &[Self]) -> bool {
-        let cause =
-            |one: &Self| one.explanations.first().filter(|cause| cause.is_about_program()).map(Explanation::statement);
-        found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
-    }
-
     /// Removes everything that the hints do not allow, except for the explanations.
     pub fn limit_to_hints(&mut self, hints: Hints) {
         if hints < Hints::Full {

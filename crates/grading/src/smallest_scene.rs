@@ -80,17 +80,12 @@ pub struct WrongScene<'a> {
 /// Returns the causes of the wrong scenes: the likely mistakes, the ways in which the program failed, and for a few
 /// scenes an unknown cause.
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
-    let likely = likely.iter().filter(|one| one.is_about_program() || one.is_not_finite()).map(|one| {
-        match one.is_not_finite() {
-            true => WrongReason::NotFinite,
-            false => WrongReason::Mistake(one.clone().into()),
-        }
-    });
+    let likely = likely.iter().filter(|one| one.is_about_program() || one.is_not_finite());
+    let likely = likely.map(|one| WrongReason::Mistake(one.clone().into()));
     let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
     for reason in likely.chain(wrong.iter().filter_map(|one| WrongReason::from_end(one.ended))) {
         let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
             (WrongReason::Mistake(mistake), None) => is_named_in(mistake, one.explanations),
-            (WrongReason::NotFinite, None) => one.explanations.iter().any(Explanation::is_not_finite),
             (reason, end) => end.as_ref() == Some(reason),
         };
         left.retain(|one| !is_of(one));
@@ -101,6 +96,15 @@ pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec
     }
     all.extend(left.iter().take(MAX_UNNAMED_CAUSES).map(|one| (None, vec![one.task])));
     all
+}
+
+/// Returns whether a scene shows only what those in `found` show: it has the content of one of them, or its
+/// explanations name the cause of one.
+pub fn is_repetition(small: &SmallestScene, found: &[SmallestScene]) -> bool {
+    found.iter().any(|one| {
+        let cause = one.explanations.first().filter(|cause| cause.is_about_program());
+        one.xml == small.xml || cause.is_some_and(|cause| is_named_in(cause, &small.explanations))
+    })
 }
 
 /// Searches for smallest scenes, by running a program on smaller and smaller ones.

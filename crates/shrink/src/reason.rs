@@ -29,9 +29,7 @@ pub enum WrongReason {
     Ended(FailureKind, Option<i32>),
     /// The trace cannot be read to its end.
     BrokenTrace,
-    /// The trace contains values that are not finite from some step on.
-    NotFinite,
-    /// A likely mistake is the reason.
+    /// A likely mistake is the reason, or the stage from which on values are not finite.
     Mistake(Box<Explanation>),
     /// A finding that nothing explains is the reason. The values are its kind, and the kind of its pair.
     Finding(FindingKind, Option<PairKind>),
@@ -49,12 +47,11 @@ impl WrongReason {
     pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
         let (fault, detail) = find_reason(scene, seen)?;
         let Some(detail) = detail else { return Some(fault) };
-        let explanations = diagnose::explain(scene, &seen.trace);
-        if explanations.iter().any(Explanation::is_not_finite) {
-            return Some(Self::NotFinite);
-        }
-        let is_likely = |one: &Explanation| one.is_about_program() && (one.is_complete() || one.names_stage());
-        let likely = explanations.into_iter().find(is_likely).map(|one| Self::Mistake(Box::new(one)));
+        let is_likely = |one: &Explanation| {
+            one.is_not_finite() || (one.is_about_program() && (one.is_complete() || one.names_stage()))
+        };
+        let mut explanations = diagnose::explain(scene, &seen.trace).into_iter();
+        let likely = explanations.find(is_likely).map(|one| Self::Mistake(Box::new(one)));
         likely.or_else(|| is_clear_finding(detail).then_some(fault))
     }
 
@@ -63,26 +60,29 @@ impl WrongReason {
     /// first one that the scene shows, without other mistakes that have the same effect.
     pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, seen) else { return false };
-        let explanations = || diagnose::explain(scene, &seen.trace);
         match (self, detail) {
-            (Self::Mistake(_), Some(FindingDetail::BeyondReach { .. })) => false,
-            (Self::Mistake(mistake), Some(_)) => {
-                // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage
-                // without code.
-                let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
-                let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
-                let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
-                // Most attempts end here, long before every mistake of the catalogue has been tried.
-                if is_alone && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
-                    return false;
-                }
-                let found = explanations();
-                let first = found.first().map(Explanation::statement);
-                if is_alone { first == Some(mistake.statement()) } else { is_named_in(mistake, &found) }
-            }
-            (Self::NotFinite, Some(_)) => explanations().iter().any(Explanation::is_not_finite),
+            (Self::Mistake(mistake), Some(FindingDetail::BeyondReach { .. })) if !mistake.is_not_finite() => false,
+            (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, seen, is_alone),
             (_, detail) => fault == *self && detail.is_none_or(is_clear_finding),
         }
+    }
+}
+
+/// Returns whether the explanations of a wrong trace name a mistake, as the first one if that is requested.
+fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
+    // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage without code.
+    let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
+    let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
+    let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
+    // Most attempts end here, long before every mistake of the catalogue has been tried.
+    if is_alone && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
+        return false;
+    }
+    let explanations = diagnose::explain(scene, &seen.trace);
+    if is_alone {
+        explanations.first().is_some_and(|first| first.statement() == mistake.statement())
+    } else {
+        is_named_in(mistake, &explanations)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Searches for a smaller scene by attempts in a fixed order, until a whole pass of attempts makes nothing smaller.
 use crate::{
     reductions::REDUCTIONS,
-    size::{Size, is_clear, measure_size},
+    size::{Size, measure_size},
 };
 use fosssim_model::{
     assignments::Assignment,
@@ -30,16 +30,9 @@ pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut R
     for is_alone in [true, false] {
         for (step, scene) in beginnings {
             if holds(scene, is_alone)? {
-                let mut search = Search {
-                    size: measure_size(scene),
-                    oddities: count_warnings(scene, assignment),
-                    is_clear: is_clear(scene),
-                    scene: scene.clone(),
-                    refuted: BTreeSet::new(),
-                    assignment,
-                    is_alone,
-                    holds,
-                };
+                let size = measure_size(scene, assignment);
+                let refuted = BTreeSet::new();
+                let mut search = Search { assignment, is_alone, holds, scene: scene.clone(), size, refuted };
                 let is_minimal = search.run().is_some();
                 return Some(SmallScene { scene: search.scene, step: *step, is_minimal });
             }
@@ -55,10 +48,7 @@ struct Search<'a, 'b> {
     holds: &'a mut RunProgram<'b>,
     scene: Scene,
     size: Size,
-    /// The number of warnings, and of parts that programs of the assignment do not support.
-    oddities: usize,
-    /// Whether no decision depends on round-off.
-    is_clear: bool,
+    /// The scenes on which the program is not wrong for the reason, as XML.
     refuted: BTreeSet<String>,
 }
 
@@ -81,32 +71,20 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Takes the first of these scenes that is smaller, at least as sound and clear, and on which the program is wrong
-    /// for the reason. Returns whether there is one, or `None` if the search must end.
+    /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason. Returns whether
+    /// there is one, or `None` if the search must end.
     fn take_smaller(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
-            if measure_size(&scene) >= self.size {
-                continue;
-            }
-            let (oddities, is_clear, xml) =
-                (count_warnings(&scene, self.assignment), is_clear(&scene), scene::write(&scene));
-            if oddities > self.oddities || (self.is_clear && !is_clear) || self.refuted.contains(&xml) {
+            let (size, xml) = (measure_size(&scene, self.assignment), scene::write(&scene));
+            if size >= self.size || self.refuted.contains(&xml) {
                 continue;
             }
             if (self.holds)(&scene, self.is_alone)? {
-                (self.size, self.oddities, self.is_clear, self.scene) =
-                    (measure_size(&scene), oddities, is_clear, scene);
+                (self.size, self.scene) = (size, scene);
                 return Some(true);
             }
             self.refuted.insert(xml);
         }
         Some(false)
     }
-}
-
-/// Counts the warnings about a scene, and its parts that programs of the assignment do not support. A scene that is not
-/// sound has more of them than any other.
-fn count_warnings(scene: &Scene, assignment: Assignment) -> usize {
-    let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
-    loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_features(assignment).count())
 }

@@ -1,11 +1,11 @@
 //! Measures the complexity of a scene, which is the number of parts, numbers and digits that its reader must follow.
 use fosssim_model::{
-    scene::{Collision, Force, Integrator, Scene},
-    sim::{Detection, Observer, Pair, RootSearch, Simulation},
+    assignments::Assignment,
+    scene::{self, Collision, Force, Integrator, Scene},
+    sim::{RootSearch, Simulation},
+    trace::EventCounts,
 };
 
-/// The maximum number of bodies, and of steps, of scenes that are simulated.
-const MAX_SIMULATED_SIZE: usize = 8;
 /// The maximum number of digits of a number that people compute by hand.
 const HAND_DIGITS: usize = 3;
 /// The relative and absolute change of numbers that must not change the result, and the factor by which the change may
@@ -85,12 +85,13 @@ pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
 }
 
 /// The size of a scene: the first number that differs decides which of two is smaller.
-pub(crate) type Size = ([usize; 7], f64);
+pub(crate) type Size = ([usize; 9], f64);
 
-/// Measures a scene: steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that
-/// the reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far
-/// as they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
-pub(crate) fn measure_size(scene: &Scene) -> Size {
+/// Measures a scene: whether it depends on round-off; warnings, and parts that programs of the assignment do not
+/// support; steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that the
+/// reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far as
+/// they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
+pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
     let mut copy = scene.clone();
     let not_plain = list_numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.simplest_value());
@@ -107,13 +108,20 @@ pub(crate) fn measure_size(scene: &Scene) -> Size {
         Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
     };
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
-    let is_small = scene.particles.len().max(scene.step_count() as usize) <= MAX_SIMULATED_SIZE;
-    let (hits, end) = if is_small { simulate(scene).unwrap_or_default() } else { Default::default() };
-    let hits = hits.iter().filter(|(_, collides)| *collides).count();
+    let (events, end) = simulate(scene).unwrap_or_default();
+    let hits = events.hits.values().sum::<u64>() as usize;
     let long: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
     let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
-    ([steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
+    let (unclear, oddities) = (usize::from(!is_clear(scene)), count_oddities(scene, assignment));
+    ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
+}
+
+/// Counts the warnings about a scene, and its parts that programs of the assignment do not support. A scene that is not
+/// sound has more of them than any other.
+fn count_oddities(scene: &Scene, assignment: Assignment) -> usize {
+    let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
+    loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_features(assignment).count())
 }
 
 /// Returns the digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5 and for 10.
@@ -124,7 +132,7 @@ fn count_digits(value: f64) -> usize {
 
 /// Returns whether the reference has a result, and round-off cannot change the result.
 pub(crate) fn is_clear(scene: &Scene) -> bool {
-    let Some((decisions, end)) = simulate(scene) else { return false };
+    let Some((events, end)) = simulate(scene) else { return false };
     (1..=2_usize).all(|seed| {
         let mut shifted = scene.clone();
         for (index, (_, value)) in list_numbers(&mut shifted).into_iter().enumerate().skip(1) {
@@ -133,27 +141,16 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
             *value += if is_up { NUMBER_SHIFT } else { -NUMBER_SHIFT } * (1.0 + value.abs());
         }
         let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= NUMBER_SHIFT * MAX_GROWTH * (1.0 + one.abs());
-        simulate(&shifted).is_some_and(|(others, other)| others == decisions && end.iter().zip(&other).all(is_near))
+        simulate(&shifted).is_some_and(|(others, other)| others == events && end.iter().zip(&other).all(is_near))
     })
 }
 
-/// The reference's decision about each pair in the order of its detections, and all numbers of its last state.
-type RunResult = (Vec<(Pair, bool)>, Vec<f64>);
-
-/// Runs the reference, or returns `None` if a step has no result.
-pub(crate) fn simulate(scene: &Scene) -> Option<RunResult> {
-    #[derive(Default)]
-    struct Decisions(Vec<(Pair, bool)>);
-    impl Observer for Decisions {
-        fn observe_detection(&mut self, detection: &Detection<'_>) {
-            self.0.push((detection.pair, detection.decision.collides()));
-        }
-    }
-    let mut decisions = Decisions::default();
-    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+/// Runs the reference, and returns its events and all numbers of its last state, or `None` if a step has no result.
+pub(crate) fn simulate(scene: &Scene) -> Option<(EventCounts, Vec<f64>)> {
+    let (mut events, mut simulation) = (EventCounts::new(scene), Simulation::new(scene, RootSearch::OnDemand));
     for _ in 0..scene.step_count() {
-        simulation.step(&mut decisions).ok()?;
+        simulation.step(&mut events).ok()?;
     }
     let state = simulation.state();
-    state.is_finite().then(|| (decisions.0, [&state.positions[..], &state.velocities].concat()))
+    state.is_finite().then(|| (events, [&state.positions[..], &state.velocities].concat()))
 }

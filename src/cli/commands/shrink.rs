@@ -17,13 +17,15 @@ use crate::{
         style::Style,
         untrusted_text::quote,
     },
-    scene,
+    scene::{self, Scene},
     shrink::{SmallScene, WrongReason, step_starts},
     suite::{
         config::Hints,
+        disclosure::DisclosedFinding,
         failure_cause::FailureKind,
         smallest_scene::{
-            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, shorten_limits,
+            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, is_repetition,
+            shorten_limits,
         },
     },
     together::disclosure::limit_explanations,
@@ -46,6 +48,10 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
     if tasks.is_empty() {
         bail!("`shrink` needs a scene with at most {MAX_BODIES} bodies");
+    }
+    let is_too_late = |scene: &Scene| arguments.step.is_some_and(|step| step > scene.step_count());
+    if let Some(task) = tasks.iter().find(|task| is_chosen(&task.name) && is_too_late(&task.scene)) {
+        bail!("the last step of {} is {}", task.name, task.scene.step_count());
     }
     let drawing = Drawing { hints: Hints::Full, has_pictures: false };
     let Some(mut examined) = program.examine(tasks, drawing)? else { return Ok(exit::INTERRUPTED) };
@@ -94,7 +100,7 @@ pub(super) fn add_smallest(
         bar.next_run("making scenes smaller");
         let small = shrinker.shrink_cause(cause).map_err(anyhow::Error::msg)?;
         let told = small.map(|small| describe(&small, &name, &program.suite, drawing));
-        if let Some((small, card)) = told.filter(|(told, _)| told.is_new(&found)) {
+        if let Some((small, card)) = told.filter(|(told, _)| !is_repetition(told, &found)) {
             found.push(small);
             cards.push(card);
         }
@@ -130,63 +136,85 @@ pub(super) fn describe(
         note,
         first_finding: first,
         explanations: match reason {
-            WrongReason::Mistake(cause) => limit_explanations(drawing.hints, vec![add_example(cause, explanations)]),
+            WrongReason::Mistake(cause) if !cause.is_not_finite() => {
+                limit_explanations(drawing.hints, vec![add_example(cause, &explanations)])
+            }
             _ => explanations,
         },
         ..SmallestScene::default()
     };
     if drawing.hints == Hints::Full {
-        let (differs, first) = list_differences(small);
-        told.difference = differs;
-        if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
-            let alone = step_starts(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
+        told.difference = list_differences(scene, &seen.trace);
+        if let (None, Some(DisclosedFinding::Full(Finding { step, detail, .. }))) = (&told.note, &told.first_finding) {
+            let alone =
+                step_starts(scene, &seen.trace, &[*step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
-            told.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, step));
+            told.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, *step));
         }
     }
     (told, card)
 }
 
 /// Returns the explanation of the cause, but with the example from the smallest scene.
-fn add_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
+fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
-    match named.or_else(|| own.first()) {
-        // The explanation of missed pairs counts them over the whole run.
-        Some(own) if matches!(own.topic, ExplanationTopic::Pairs(_)) && named.is_some() => own.clone(),
-        own => {
-            // If the cause is unwritten stages, the explanation lists these stages.
-            let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
-            // If there is only one sample, many formulas agree with a wrong polynomial, so the exact form is left out.
-            let is_fitted = cause.samples < 2 && matches!(cause.topic, ExplanationTopic::Polynomials { .. });
-            let details = if is_fitted { Vec::new() } else { cause.details.clone() };
-            let example = own.and_then(|own| own.example.clone());
-            Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
-        }
-    }
+    let example = named.or(own.first()).and_then(|one| one.example.clone());
+    // If the cause is unwritten stages, the explanation lists these stages.
+    let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
+    let details = match (&cause.topic, named) {
+        // Many formulas agree with a single wrong polynomial.
+        (ExplanationTopic::Polynomials { .. }, _) if cause.samples < 2 => Vec::new(),
+        // What a wrong stage does is measured in this scene.
+        (ExplanationTopic::Stage(_), Some(own)) => own.details.clone(),
+        _ => cause.details.clone(),
+    };
+    Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
 }
 
-/// Returns the values that differ, as text, and the first finding.
-fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
-    let scene = &small.scene.scene;
+/// Returns the values that differ, as text.
+fn list_differences(scene: &Scene, trace: &[u8]) -> Option<String> {
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
-    let outcome = &replay::judge(scene, &small.observation.trace[..], &options, &mut steps);
+    let outcome = &replay::judge(scene, trace, &options, &mut steps);
     let (audit, tables, looks_like, rules, steps) = (false, false, None, Rules::Fair, &steps);
     let (scene, trace, explanations) = ("small.xml", "small.bin", &[][..]);
     let check = Check { scene, trace, outcome, explanations, rules, steps, audit, tables, other_file_kind: looks_like };
-    let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
-    (check.steps_text(Style::Plain), findings.and_then(|findings| findings.first_divergence))
+    check.steps_text(Style::Plain)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::{Detail, PolynomialEvidence};
+    use crate::{
+        diagnose::{Detail, PairCounts, PolynomialEvidence, StageFault, WrongPairs},
+        sim::PairKind,
+    };
+
+    /// A scene that shows a single missing pair does not show what all missing pairs have in common.
+    #[test]
+    fn missing_pairs_are_described_by_all_scenes() {
+        let pairs = |times| {
+            let counts = PairCounts { kind: PairKind::ParticleParticle, counts_by_times: times, traits: Vec::new() };
+            ExplanationTopic::Pairs(WrongPairs { first: None, counts_by_kind: vec![counts] })
+        };
+        let [cause, own] =
+            [[137, 304, 0], [1, 0, 0]].map(|times| Explanation::with_topic(Explanation::PAIRS, pairs(times)));
+        assert_eq!(add_example(&cause, &[own]).topic, cause.topic);
+    }
+
+    #[test]
+    fn what_a_wrong_stage_does_is_measured_in_the_scene() {
+        let turned = |ratio: &'static str| Explanation {
+            details: vec![Detail::Term(ratio.into())],
+            ..Explanation::with_topic("stage", ExplanationTopic::Stage(StageFault::AfterRounds))
+        };
+        assert_eq!(add_example(&turned("0.9992"), &[turned("0.8967")]).details, turned("0.8967").details);
+    }
 
     #[test]
     fn what_fits_a_single_sample_is_not_shown() {
         let wrong = Explanation::for_wrong_polynomials(Vec::new(), PolynomialEvidence::Nothing);
         let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
-        assert_eq!([1, 2].map(|samples| add_example(&fitted(samples), Vec::new()).details.len()), [0, 1]);
+        assert_eq!([1, 2].map(|samples| add_example(&fitted(samples), &[]).details.len()), [0, 1]);
     }
 }

@@ -12,7 +12,8 @@ use crate::{
     result::{Reason, RunEnd, SceneResult},
     score, skipped_scenes,
     smallest_scene::{
-        DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, shorten_limits,
+        DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, is_repetition,
+        shorten_limits,
     },
     staging::StagedProgram,
     verdict::Verdict,
@@ -113,7 +114,7 @@ impl SubmissionGrading<'_> {
             }
             let small = shrinker.shrink_cause((reason, tasks)).ok().flatten();
             let told = small.map(|small| tell(&small));
-            found.extend(told.filter(|told| told.is_new(&found)));
+            found.extend(told.filter(|told| !is_repetition(told, &found)));
         }
         found
     }
