@@ -66,7 +66,7 @@ impl Display for SteplessFinding<'_> {
             }
             FindingDetail::PassCount { part, expected, actual } => {
                 let part = if part == Part::Impulses { "before the mid record" } else { "in the geometric part" };
-                write!(f, "{actual} detection passes {part}, expected {expected}")
+                write!(f, "{actual} detection {} {part}, expected {expected}", pass_noun(actual))
             }
             FindingDetail::PolynomialDegree { place, expected, actual_size, .. } => write!(
                 f,
@@ -143,8 +143,11 @@ const fn describe_record_difference(part: RecordPart, is_first: bool) -> &'stati
 /// whole.
 fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
     let Some((passes, more)) = passes else { return Ok(()) };
-    let plural = if passes == 1 { "pass" } else { "passes" };
-    write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
+    write!(f, ": {passes} detection {} too {}", pass_noun(passes), if more { "many" } else { "few" })
+}
+
+const fn pass_noun(passes: usize) -> &'static str {
+    if passes == 1 { "pass" } else { "passes" }
 }
 
 /// Writes two vectors and their distance, the wrong vector first. The vectors have as many digits as are needed to
@@ -393,5 +396,8 @@ mod tests {
         assert_eq!(words(60, 20, 20), "20 polynomials logged, expected 60: 2 detection passes too few");
         assert_eq!(words(60, 61, 20), "61 polynomials logged, expected 60");
         assert_eq!(words(0, 61, 0), "61 polynomials logged, expected 0");
+        let detail = FindingDetail::PassCount { part: Part::Impulses, expected: 2, actual: 1 };
+        let one = Finding { step: 1, frame: 2, detail }.describe().to_string();
+        assert_eq!(one, "1 detection pass before the mid record, expected 2");
     }
 }

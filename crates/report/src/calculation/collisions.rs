@@ -128,10 +128,14 @@ impl Observer for CollisionWalk<'_> {
         let closing: f64 = weights.iter().map(|&(particle, w)| w * speed(particle).dot(&u)).sum();
         let factor = 1.0 + scene.collision.restitution();
         let size = if rates == 0.0 { 0.0 } else { -factor * closing / rates };
+        let is_held = rates == 0.0;
         let [factor, closing, rates, result] = [factor, closing, rates, size].map(format_short);
         let (velocity, moves) = if is_simple { ("v", "") } else { ("D = dx / h", ", x += h times that") };
         text += &format!("  J = -(1 + COR) (sum of w {velocity:.1}.u) / (sum of w^2/m) = ");
-        text += &format!("-{factor} * {closing} / {rates} = {result}\n");
+        text += &match is_held {
+            true => "0, because all are fixed\n".to_owned(),
+            false => format!("-{factor} * {closing} / {rates} = {result}\n"),
+        };
         let rows = weights.iter().map(|&(particle, w)| {
             let change = w * size * rate(particle) * u;
             [

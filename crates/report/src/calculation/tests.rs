@@ -53,6 +53,10 @@ fn an_impact_has_its_impulse() {
     assert_has(&found, &["0 (6, 0) 1 1 (-6, 0)", "1 (0, 0) -1 0.5 (3, 0)"]);
     // The simulator's own result.
     assert_has(&found, &["0 (0, 0) (0, 0)", "1 (3, 0) (3.5, 0)"]);
+    // Nothing is divided by zero.
+    let held =
+        text("explicit-euler", r#"type="continuous-time" COR="1""#, &bodies.replace("fixed=\"0\"", "fixed=\"1\""));
+    assert_has(&held, &["J = -(1 + COR) (sum of w D.u) / (sum of w^2/m) = 0, because all are fixed"]);
 }
 
 /// Scenes without forces, and forces that come to nothing, have a step, too.

@@ -34,7 +34,7 @@ impl ExplainedPage<'_> {
     pub fn html(&self) -> String {
         let cases = &self.diagnosis.cases;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
-        let look = if wrong == 0 { "good" } else { "bad" };
+        let look = if wrong == 0 && !cases.is_empty() { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
             ([], _) => "The smallest scenes on which the program is wrong".to_owned(),
             ([case], 0) => format!("{}: nothing to explain", case.scene),
@@ -103,4 +103,17 @@ impl ExplainedContent<'_> {
 /// Renders a mistake that explains several traces.
 fn render_mistake(one: &Explanation) -> String {
     mistakes(std::slice::from_ref(one), false, None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::grade::samples;
+
+    #[test]
+    fn a_page_of_smallest_scenes_alone_is_about_a_wrong_program() {
+        let diagnosis = Diagnosis { smallest: vec![samples::smallest(Vec::new())], ..Diagnosis::default() };
+        let page = ExplainedPage { diagnosis: &diagnosis, cards: &[None] }.html();
+        assert!(page.contains("<span class=\"bad\">The smallest scenes"), "{page:.2000}");
+    }
 }
