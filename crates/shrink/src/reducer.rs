@@ -71,8 +71,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason. Returns whether
-    /// there is one, or `None` if the search must end.
+    /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason. Returns
+    /// whether there is one, or `None` if the search must end.
     fn take_smaller(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
             let (size, xml) = (measure_size(&scene, self.assignment), scene::write(&scene));

@@ -164,7 +164,7 @@ fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
     let details = match (&cause.topic, named) {
         // Many formulas agree with a single wrong polynomial.
         (ExplanationTopic::Polynomials { .. }, _) if cause.samples < 2 => Vec::new(),
-        // What a wrong stage does is measured in this scene.
+        // The numbers that describe a wrong stage are those of this scene.
         (ExplanationTopic::Stage(_), Some(own)) => own.details.clone(),
         _ => cause.details.clone(),
     };
