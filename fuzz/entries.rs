@@ -1,4 +1,4 @@
-//! The work of the fuzz targets on their bytes; the ordinary tests replay the seeds through the same functions.
+//! The work of the fuzz targets. The ordinary tests replay the seeds through the same functions.
 use fosssim_oracle::{
     diagnose,
     judge::{Book, Ruling, replay},
@@ -33,10 +33,10 @@ pub const SCENES: [&str; 5] = [
         <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.15" nx="0" ny="1"/></scene>"#,
 ];
 
-/// More than this many steps, particles, edges or half-planes are not simulated.
+/// Scenes with more steps, particles, edges or half-planes are not simulated.
 const SMALL: usize = 6;
 
-/// Reads a scene; a small one that is accepted is simulated, and its recording read back.
+/// Reads a scene. If a small scene is accepted, it is simulated, and its recording is read again.
 pub fn scene(bytes: &[u8]) {
     let Ok(read) = original::read(bytes) else { return };
     let mut scene = read.scene;
@@ -57,7 +57,7 @@ pub fn scene(bytes: &[u8]) {
     }
 }
 
-/// The recording of at most `steps` steps with its layout, and whether no step failed.
+/// Returns the recording of at most `steps` steps with its layout, and whether all steps had a result.
 pub fn record(scene: &Scene, steps: usize) -> std::io::Result<(Layout, Vec<u8>, bool)> {
     let steps = scene.step_count().min(u32::try_from(steps).unwrap_or(u32::MAX));
     let layout = Layout { steps, ..Layout::for_scene(scene) };
@@ -92,11 +92,11 @@ pub fn trace(bytes: &[u8]) {
     assert_eq!(has_verdict, outcome.stop.is_none() && outcome.parity.endless_step.is_none());
 }
 
-/// The numbers at which arithmetic overflows, underflows, or has left the numbers: seeds of [`judge`].
+/// Numbers that overflow, underflow or are not finite, as seeds of [`judge`].
 pub const EXTREMES: [f64; 10] =
     [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e155, f64::MAX, 1e-160, 5e-324, 0.0];
 
-/// The recording of a scene from whose second record on all positions and velocities are one number.
+/// Returns the recording of a scene. All positions and velocities from the second record on are one number.
 pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
     let scene = original::read(SCENES[choice].as_bytes()).expect("our own scene").scene;
     let (layout, trace, _) = record(&scene, usize::MAX).expect("writing to memory");
@@ -112,8 +112,9 @@ pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
     writer.finish().expect("writing to memory").0
 }
 
-/// A scene, the trace of it that these bytes make, and its recording. The first byte chooses the scene, the rest is the
-/// trace; what is missing at its end comes from the recording, so that a few bytes make a whole trace.
+/// Returns a scene, a trace of it made from these bytes, and its recording. The first byte chooses the scene, and the
+/// others are the trace. If the trace is too short, the rest comes from the recording, so that a few bytes make a
+/// complete trace.
 fn whole(bytes: &[u8]) -> Option<(Scene, Vec<u8>, Vec<u8>)> {
     let (&choice, start) = bytes.split_first()?;
     let xml = SCENES[usize::from(choice) % SCENES.len()];
@@ -123,14 +124,14 @@ fn whole(bytes: &[u8]) -> Option<(Scene, Vec<u8>, Vec<u8>)> {
     Some((scene, trace, recorded))
 }
 
-/// Explains a whole trace.
+/// Explains a complete trace.
 pub fn explain(bytes: &[u8]) {
     let Some((scene, trace, recorded)) = whole(bytes) else { return };
     let explanations = diagnose::explain(&scene, &trace);
     assert!(trace != recorded || explanations.is_empty(), "nothing is wrong with the recording: {explanations:?}");
 }
 
-/// Judges a whole trace by both rule books.
+/// Judges a complete trace by both rule books.
 pub fn judge(bytes: &[u8]) {
     let Some((scene, trace, _)) = whole(bytes) else { return };
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
@@ -152,7 +153,7 @@ pub fn judge(bytes: &[u8]) {
     }
 }
 
-/// Reads a suite. What is wrong with it is told with places that the text has.
+/// Reads a suite. The positions of its errors must be in the text.
 pub fn suite(bytes: &[u8]) {
     let Ok(text) = std::str::from_utf8(bytes) else { return };
     match config::read(text) {
@@ -167,12 +168,12 @@ pub fn suite(bytes: &[u8]) {
     }
 }
 
-/// Reads a line of the journal. What is kept again is the same.
+/// Reads a line of the journal. Writing and reading it again changes nothing.
 pub fn journal(bytes: &[u8]) {
     let Some(entry) = results::read_line(bytes) else { return };
     let again = results::format_line(&entry.key, &entry.submission, &entry.result);
     let same = results::read_line(&again).expect("our own line is sound");
-    // Not by `==`: what is not a number is kept, too.
+    // The comparison is not by `==`, because NaN must also stay the same.
     assert_eq!(format!("{same:?}"), format!("{entry:?}"));
 }
 
@@ -181,7 +182,7 @@ pub fn wire(bytes: &[u8]) -> usize {
     sandbox::read_messages(bytes)
 }
 
-/// Number of records and of bytes behind them, or what is wrong.
+/// Returns the number of records and of the bytes after them, or the error.
 fn frames(mut reader: Reader<&[u8]>) -> Result<(u64, u64), TraceError> {
     let mut frame = Frame::default();
     while reader.next(&mut frame)? {}

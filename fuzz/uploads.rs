@@ -1,5 +1,5 @@
-//! The work of the service's fuzz target on its bytes; the service's tests replay the seeds, and what becomes of
-//! them when bytes change, through the same function.
+//! The work of the service's fuzz target. The service's tests replay the seeds and changed seeds through the same
+//! function.
 use fosssim_intake::ArchiveLimits;
 use fosssim_server::web;
 use std::{
@@ -8,10 +8,10 @@ use std::{
     path::Path,
 };
 
-/// Small enough to be reached.
+/// The limits are so small that inputs reach them.
 const LIMITS: ArchiveLimits = ArchiveLimits { bytes: 1 << 16, entries: 64 };
 
-/// Looks through an archive that a stranger sent, and unpacks it. Whether it is accepted.
+/// Checks and unpacks an archive from a stranger. Returns whether it is accepted.
 pub fn archive(bytes: &[u8]) -> bool {
     let place = tempfile::tempdir().expect("a folder");
     let (file, outside, folder) =
@@ -23,7 +23,7 @@ pub fn archive(bytes: &[u8]) -> bool {
     let looked = fosssim_intake::list_archive(open(), LIMITS);
     let unpacked = fosssim_intake::unpack(open(), &folder, LIMITS);
     assert_eq!(looked.is_ok(), unpacked.is_ok(), "what is looked through can be unpacked: {looked:?}, {unpacked:?}");
-    // In every case nothing lies outside, nothing is a link, and no more came out than may.
+    // In every case, no file is outside, there are no links, and the size is within the limit.
     assert_eq!(fs::read_to_string(&outside).expect("the file"), "untouched");
     let beside: Vec<_> =
         fs::read_dir(place.path()).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
@@ -41,13 +41,13 @@ pub fn archive(bytes: &[u8]) -> bool {
 /// The largest file of a form.
 const LARGEST: u64 = 1 << 12;
 
-/// Receives a form as a browser sends it, in pieces whose size is the first byte. Whether it is accepted.
+/// Receives a form as a browser sends it, in pieces whose size is the first byte. Returns whether it is accepted.
 pub fn form(bytes: &[u8]) -> bool {
     let Some((pieces, body)) = bytes.split_first() else { return false };
     let place = tempfile::tempdir().expect("a folder");
     let runtime = tokio::runtime::Builder::new_current_thread().enable_time().build().expect("a runtime");
     let received = runtime.block_on(web::receive_form(place.path(), body, usize::from(*pieces), LARGEST));
-    // In every case there is no more than allowed, and nothing lies around.
+    // In every case the size is within the limit, and no files are left.
     assert_eq!(fs::read_dir(place.path()).expect("a folder").count(), 0);
     match received {
         Ok((size, [_, kind, key])) => {

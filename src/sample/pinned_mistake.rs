@@ -73,7 +73,7 @@ mod tests {
         let place: &PinSlot = pinned[6..6 + SLOT_BYTES].try_into().expect("as long");
         assert_eq!(read(place), Some("pe-square-no-eh"));
         assert_eq!((&pinned[..6], &pinned[6 + SLOT_BYTES..]), (&b"before"[..], &b"after"[..]));
-        // Another id may be written over it, also a shorter one.
+        // Another id may replace it, also a shorter one.
         let again = write(&pinned, "short").expect("a place");
         assert_eq!(read(again[6..6 + SLOT_BYTES].try_into().expect("as long")), Some("short"));
     }

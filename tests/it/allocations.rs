@@ -40,7 +40,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Counts what it hears, so that a test can tell that something happened.
+/// Counts the events that it receives, so that a test can check that something happened.
 #[derive(Default)]
 struct Heard {
     detections: usize,
@@ -56,7 +56,7 @@ impl Observer for Heard {
     }
 }
 
-/// Two balls and a board that lie on the ground and are pulled down at every step.
+/// Returns a scene with two balls and a board that rest on the ground and are pulled down in every step.
 fn resting(collision: Collision) -> Scene {
     let particle = |x: f64| Particle {
         position: Vec2::new(x, 0.1),

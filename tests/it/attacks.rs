@@ -9,7 +9,8 @@ use fosssim_testing::{Need, skip};
 
 use crate::sandbox::backend;
 
-/// Runs the attacks whose names begin with one of these words, or all; `None` (said in a line) without a C compiler.
+/// Runs the attacks whose names begin with one of these words, or all attacks. Returns `None` and prints a line without
+/// a C compiler.
 fn attacked(backend: &Backend, families: &[&str]) -> Option<PromiseTable> {
     let cc = Path::new("cc");
     if std::process::Command::new(cc).arg("--version").output().is_err() {
@@ -26,25 +27,26 @@ fn attacked(backend: &Backend, families: &[&str]) -> Option<PromiseTable> {
     Some(table.unwrap())
 }
 
-/// Where the suite's programs are built, and stay.
+/// Returns the folder in which the suite's programs are built and kept.
 fn folder() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("attacks")
 }
 
-/// The suite with all walls that this machine has, run once for all tests that ask; after it all programs are built.
+/// Runs the suite once, with all layers of protection that this machine has, for all tests. Afterwards all programs are
+/// built.
 fn with_all_walls() -> Option<&'static PromiseTable> {
     static TABLE: OnceLock<Option<PromiseTable>> = OnceLock::new();
     TABLE.get_or_init(|| attacked(backend()?, &[])).as_ref()
 }
 
-/// A compiler for the suite that takes what is built already.
+/// A compiler for the suite that returns programs that are already built.
 const BUILT: &str = r#"#!/bin/sh
 for word; do source=$word; [ "$before" = -o ] && program=$word; before=$word; done
 name=${source##*/}
 cp "${0%/*}/programs/${name%.c}"-???????????????? "$program" 2>/dev/null || exec cc "$@"
 "#;
 
-/// Attacks on files, which namespaces and file rules keep away.
+/// Attacks on files, which namespaces and file rules prevent.
 const FILES: [&str; 13] = [
     "closed", "execute", "hard", "leak", "links", "lock", "proc_", "read", "strange", "survivor", "swap", "trace",
     "write",
@@ -54,9 +56,9 @@ const PROCESSES: [&str; 12] = [
     "affinity", "counts", "daemon", "kill", "leader", "numbers", "outlive", "priority", "process", "proc_", "signal",
     "lease",
 ];
-/// Attacks by memory and by many processes, which control groups limit.
+/// Attacks that use much memory or many processes, which control groups limit.
 const CROWDS: [&str; 9] = ["busy", "fork", "heap", "memory", "processor", "short", "sleeper", "stopped", "thread"];
-/// Attacks by forbidden calls, which are named where the kernel announces them.
+/// Attacks by forbidden calls. The report names the calls if the kernel reports them.
 const CALLS: [&str; 6] = ["commands", "execute", "kernel", "leak", "lock", "write_modes"];
 
 fn assert_all_held(table: &PromiseTable, at_least: usize) {
@@ -124,7 +126,7 @@ fn hosts_without_namespaces_and_control_groups_hold_the_promises_too() {
     assert_all_held(&table, 60);
 }
 
-/// Root can try what an ordinary user's grader holds: the program alone, where everybody may execute it.
+/// Root can test what protects an ordinary user's grader: only the program, in a place where all users may execute it.
 #[test]
 fn an_ordinary_users_grader_holds_the_promises_too() {
     use std::os::unix::fs::PermissionsExt;
@@ -175,7 +177,7 @@ fn attacks_are_never_run_without_walls() {
 
 #[test]
 fn an_attack_refuses_by_itself_outside_the_sandbox() {
-    // The one that does nothing but print.
+    // The source of the attack that only prints.
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/attacks/forged_verdict.c");
     let folder = tempfile::tempdir().unwrap();
     let program = folder.path().join("program");

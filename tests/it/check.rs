@@ -15,7 +15,7 @@ use fosssim_oracle::{
     trace::{Frame, Layout, Reader, Writer},
 };
 use serde_json::Value;
-/// The report of `trace` for `scene`, as text and, checked against its schema, as JSON.
+/// Returns the report on `trace` for `scene`, as text and as JSON, checked against its schema.
 fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
     let workspace = Workspace::new();
     workspace.write("scene.xml", scene);
@@ -26,7 +26,7 @@ fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
     (text, schemas::valid("check", &json.stdout))
 }
 
-/// The reference trace of a scene with changed frames.
+/// Returns the reference trace of a scene with changed frames.
 fn changed(scene: &str, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let layout = Layout::for_scene(&scene::read("scene", scene.as_bytes()).unwrap().scene);
     let trace = trace_of(scene);
@@ -155,7 +155,7 @@ fn colors_only_decorate() {
     let colored = check.text(Style::Color);
     let mut plain = String::new();
     for piece in colored.split('\x1b') {
-        // The first piece has no code before it.
+        // The text before the first piece has no color code.
         plain += if plain.is_empty() && !colored.starts_with('\x1b') {
             piece
         } else {
@@ -166,13 +166,13 @@ fn colors_only_decorate() {
     assert_eq!(check.text(Style::Plain), plain);
 }
 
-/// The bytes may end inside the last list of a record. Then `check` and `trace info` count the same whole records.
+/// The bytes may end inside the last list of a record. `check` and `trace info` then count the same complete records.
 #[test]
 fn a_record_that_is_cut_does_not_count() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
     let trace = trace_of(BOUNCE);
-    // Positions and velocities, impulses, and the polynomials except for one byte.
+    // This keeps the positions, velocities and impulses, and all but one byte of the polynomials.
     workspace.write("cut.bin", &trace[..163]);
     let check = workspace.run(["check", "scene.xml", "cut.bin"]);
     assert!(check.out().contains("the trace ends after 1 record, but this scene's trace has 5"), "{}", check.shown());
@@ -209,7 +209,7 @@ fn what_the_original_reads_over_is_noted() {
     let trace = trace_of(BOUNCE);
     let trailing = [&trace[..], b"more"].concat();
     insta::assert_snapshot!("trailing_bytes", reports(BOUNCE, &trailing).0.shown());
-    // The last polynomial's coefficients share their last byte, so the original does not notice either.
+    // The coefficients of the last polynomial share their last byte, so the original does not notice the difference.
     let shorter = &trace[..trace.len() - 1];
     insta::assert_snapshot!("last_byte_missing", reports(BOUNCE, shorter).0.shown());
     let mut negative = trace;
@@ -227,7 +227,7 @@ fn every_cut_ends_with_a_report() {
         let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json"]);
         let json: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{length}: {}", run.shown()));
         let placed = json["problem"]["offset"].is_u64() || json["damage"]["offset"].is_u64();
-        // One length is that of a trace of states alone, which a remark tells.
+        // One length is that of a trace with states only, so the report contains a remark about it.
         let only_remark = run.err().is_empty() || run.err().contains("only positions and velocities");
         assert!(placed && only_remark, "{length}: {}", run.shown());
     }
@@ -296,7 +296,7 @@ fn the_bundled_trace_of_the_readme_shows_its_mistake() {
     assert!(out.starts_with("WRONG ANSWER") && out.contains("coefficient of t^2"), "{out}");
 }
 
-/// A right trace that breaks off inside a polynomial list, as that of a program that crashed or was killed does.
+/// Returns a right trace that ends inside a list of polynomials, like that of a program that crashed or was killed.
 fn broken_off(trace: &[u8], length: usize) -> String {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BEAM);
@@ -345,7 +345,7 @@ fn another_scenes_trace_is_asked_about_and_not_explained() {
     }
 }
 
-/// The moving ball's states in every step are wrong, and the second has a wrong velocity, too.
+/// Returns a trace in which the moving ball's states are wrong in every step, and its second velocity as well.
 fn wrong_drift() -> Vec<u8> {
     changed(DRIFT, |frames| {
         frames[1].state.positions[0] += 1e-3;
@@ -386,7 +386,7 @@ fn single_steps_are_shown_alone() {
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--step", "5"]);
     assert_eq!(run.code, Some(2));
     assert!(run.err().contains("has 4 steps; there is no step 5"), "{}", run.err());
-    // A trace that could not be judged is not called right.
+    // A trace that could not be judged is not reported as right.
     workspace.write("cut.bin", &wrong_drift()[..150]);
     let run = workspace.run(["check", "scene.xml", "cut.bin", "--step", "4"]);
     assert!(run.out().contains("Step 4 of 4: not judged"), "{}", run.shown());
@@ -464,7 +464,7 @@ fn what_is_no_trace_is_told_in_one_line() {
             run.shown()
         );
     }
-    // A trace that is cut short is a trace all the same.
+    // A truncated file is still recognized as a trace.
     workspace.write("thing", &trace_of(BOUNCE)[..20]);
     assert!(!workspace.run(["check", "scene.xml", "thing"]).out().contains("is not a trace"));
 }

@@ -1,5 +1,5 @@
-//! Folders that hostile people fill: of classes, of traces, of results and of shards. Nobody is left out in silence,
-//! nobody takes another's points, nothing is followed, and nothing is waited for.
+//! Hostile folders of classes, traces, results and shards. No submission is omitted without a message, no submission
+//! gets another one's points, links are not followed, and the grader never waits for other programs.
 use crate::workspace::{BOUNCE, Run, Workspace, trace_of};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -17,7 +17,7 @@ use std::{
 const SUITE: &str =
     "schema = 1\nname = \"test\"\n[[group]]\nname = \"own\"\npoints = 10\nscenes = [\"scenes/*.xml\"]\n";
 
-/// A workspace with a suite of one small scene.
+/// Returns a workspace with a suite of one small scene.
 fn workspace() -> Workspace {
     let workspace = Workspace::new();
     workspace.write("suite.toml", SUITE);
@@ -36,7 +36,7 @@ fn with_programs() -> Option<Workspace> {
     None
 }
 
-/// Writes a program that ends with this code.
+/// Writes a program that exits with this code.
 fn program(workspace: &Workspace, name: impl AsRef<Path>, code: u8) {
     workspace.write(&name, format!("#!/bin/sh\nexit {code}\n"));
     fs::set_permissions(workspace.path(name), fs::Permissions::from_mode(0o755)).expect("a mode");
@@ -55,7 +55,7 @@ fn table(workspace: &Workspace, file: &str) -> Vec<csv::StringRecord> {
     csv::Reader::from_reader(&bytes[..]).into_records().map(|row| row.expect("a row")).collect()
 }
 
-/// The names of a class that wants to be taken for each other, or for something else.
+/// Returns the names of submissions that imitate each other or other files.
 fn hostile_names() -> Vec<Vec<u8>> {
     let long: [Vec<u8>; 2] = [vec![b'x'; 255], "\u{754c}".repeat(85).into_bytes()];
     let names: [&[u8]; 34] = [
@@ -119,7 +119,7 @@ fn every_entry_of_a_class_has_one_row_and_a_name_of_its_own() {
     seen.sort_unstable();
     seen.dedup();
     assert_eq!(seen.len(), names.len(), "two rows of one name");
-    // The changes that an import makes to cells: blanks around them go, case counts or not.
+    // An import may change cells: it may remove spaces around names and ignore case.
     let mut imported: Vec<String> = seen.iter().map(|name| name.trim().to_lowercase()).collect();
     imported.sort_unstable();
     imported.dedup();
@@ -140,10 +140,10 @@ fn every_entry_of_a_class_has_one_row_and_a_name_of_its_own() {
     }
     let annotations = String::from_utf8(workspace.read("github.out")).expect("text");
     assert!(annotations.lines().all(|line| line.starts_with("::error title=") || line.starts_with("::warning title=")));
-    // A second time everything is found again under the same names.
+    // A second run finds all submissions again under the same names.
     let again = grade(&workspace, &["class", "--output", "grades"]);
     assert!(again.err().contains(&format!("reused {0} of {0} results", names.len())), "{}", again.shown());
-    // No name widens or breaks the table.
+    // No name makes the table wider or breaks its lines.
     let widest = again.out().lines().map(|line| line.chars().count()).max();
     assert!(widest < Some(160), "{widest:?}\n{}", again.out());
     assert_eq!(
@@ -177,7 +177,7 @@ fn nobody_is_passed_over_in_silence() {
         ["grades.csv", "scenes.csv", "grades.jsonl", "class.txt", "index.html"].map(|name| format!("grades/{name}"));
     for file in files.iter().chain(&others) {
         let text = String::from_utf8(workspace.read(file)).expect("text").replace('\\', "");
-        // That file is the class in numbers.
+        // That file contains the class in numbers.
         let graded: &[&str] = if file.ends_with("class.txt") { &[] } else { &["alice", "bob", "empty"] };
         for name in passed_over.iter().chain(graded) {
             assert!(text.contains(name), "{file} does not tell of {name}\n{text}");
@@ -190,7 +190,7 @@ fn nobody_is_passed_over_in_silence() {
         assert_eq!((&row[1], &row[2], &row[3]), ("not graded", "", ""));
     }
     assert!(rows.iter().any(|row| &row[0] == "empty" && &row[1] == "unusable submission" && &row[2] == "0"));
-    // Beside a single submission its own grade tells.
+    // For a single submission, the report contains its grade.
     let alone = workspace.path("class/alice");
     fs::create_dir(workspace.path("single")).expect("a folder");
     fs::rename(alone, workspace.path("single/alice")).expect("moved");
@@ -201,7 +201,8 @@ fn nobody_is_passed_over_in_silence() {
     }
 }
 
-/// Platforms keep no permissions, pack, and put folders around uploads. A bomb is its sender's own loss.
+/// Platforms drop permissions, pack uploads, and put them into folders. A decompression bomb only affects its own
+/// submission.
 #[test]
 fn a_class_as_platforms_export_it_is_graded() {
     let Some(workspace) = with_programs() else { return };
@@ -233,7 +234,7 @@ fn a_class_as_platforms_export_it_is_graded() {
     ];
     assert_eq!(found, expected, "{}", run.shown());
     assert!(run.err().contains("notes.pdf: this is neither a program nor an archive"), "{}", run.shown());
-    // A second time nothing is run again.
+    // A second run starts no program again.
     let again = grade(&workspace, &["class", "--output", "grades"]);
     assert!(again.err().contains("reused 4 of 5 results"), "{}", again.shown());
 }
@@ -259,13 +260,13 @@ fn a_second_name_of_a_file_takes_nobodys_points() {
     };
     let fine = "run-time error";
     verdicts(&[("alice", fine), ("bob", fine), ("carol", fine)]);
-    // Within the class: nobody can tell whose it is, so nobody loses, and staff is told.
+    // If both names are within the class, the owner is unknown. No submission loses points, and staff gets a warning.
     link("class/carol", "class/thief");
     let run = verdicts(&[("alice", fine), ("bob", fine), ("carol", fine), ("thief", fine)]);
     assert!(run.err().contains("one file with several names (hard links): carol, thief"), "{}", run.shown());
     let json = String::from_utf8(workspace.read("grades/grades.jsonl")).expect("text");
     assert_eq!(json.matches("the same file as another submission").count(), 2, "{json}");
-    // Where owners tell, the thief has nothing of his own, and the owner loses nothing.
+    // If the owner is known, the copy gets no points, and the original loses nothing.
     fs::create_dir(workspace.path("class/mallory")).expect("a folder");
     link("class/bob/FOSSSim", "class/mallory/FOSSSim");
     if chown(workspace.path("class/mallory"), Some(1234), None).is_ok() {
@@ -289,7 +290,7 @@ fn traces_are_reached_by_no_link() {
     fifo(&workspace.path("eve/scenes/bounce.bin"));
     fs::create_dir_all(workspace.path("frank/scenes")).expect("a folder");
     fs::File::create(workspace.path("frank/scenes/bounce.bin")).expect("a file").set_len(1 << 40).expect("a hole");
-    // A backup by hard links is no harm.
+    // A backup made of hard links does no harm.
     fs::create_dir(workspace.path("backup")).expect("a folder");
     fs::hard_link(workspace.path("alice/scenes/bounce.bin"), workspace.path("backup/bounce.bin")).expect("a link");
     fs::create_dir(workspace.path("two")).expect("a folder");
@@ -338,7 +339,7 @@ fn a_class_is_compared_with_its_earlier_grading() {
         page.contains("<li>10 points before, 0 now</li><li>1 scene broke: scenes/bounce (BT)</li>"),
         "{page:.3000}"
     );
-    // The folder holds this grading now: any file of grades will do.
+    // The folder now contains this grading, so any file of grades works.
     let run = compared(&["--compare", "grades/grades.jsonl", "--format", "json"]);
     let json: serde_json::Value = serde_json::from_str(&run.out()).expect("JSON");
     let expected = serde_json::json!({ "points": 10.0, "max_points": 10.0, "right": [], "broke": [], "others": [] });
@@ -361,7 +362,7 @@ fn a_folder_has_defaults_of_its_own() {
     assert!(wrong.code == Some(2) && wrong.err().contains("unknown field `suit`"), "{}", wrong.shown());
 }
 
-/// The files that a grading of a class leaves, whose names everybody knows.
+/// The files that the grading of a class creates, whose names are well known.
 const RESULTS: [&str; 6] = ["grades.csv", "scenes.csv", "grades.jsonl", "class.txt", "index.html", "last-run.json"];
 
 #[test]
@@ -382,7 +383,7 @@ fn a_folder_of_results_leads_nowhere_else() {
         assert!(workspace.path("grades").join(name).symlink_metadata().expect("written").is_file(), "{name}");
     }
     assert_eq!(workspace.read("precious/file"), b"precious");
-    // Its folders do not lead to other places either.
+    // The folders for results do not lead to other places either.
     for folder in ["reports", "cards", "students"] {
         drop(fs::remove_dir_all(workspace.path("grades").join(folder)));
         symlink("../precious", workspace.path("grades").join(folder)).expect("a link");
@@ -393,7 +394,7 @@ fn a_folder_of_results_leads_nowhere_else() {
         fs::remove_file(workspace.path("grades").join(folder)).expect("removed");
     }
     assert_eq!(fs::read_dir(workspace.path("precious")).expect("a folder").count(), 1);
-    // A link as the folder itself is followed only where somebody names it.
+    // A link in place of the folder itself is followed only if the command line names it.
     if workspace.run(["doctor"]).code == Some(0) {
         program(&workspace, "class/one", 3);
         program(&workspace, "class/two", 3);
@@ -404,7 +405,8 @@ fn a_folder_of_results_leads_nowhere_else() {
     }
 }
 
-/// Runs a command that may wait, and ends it by SIGTERM when it does; how long it took from then on.
+/// Runs a command that may wait, and sends SIGTERM if it does. Returns the result and how long the end took after the
+/// signal.
 fn ended(workspace: &Workspace, arguments: &[&str]) -> (Run, Duration) {
     let mut command = workspace.command();
     let child = command.args(arguments).spawn().expect("a start");
@@ -457,7 +459,7 @@ fn pipes_are_waited_for_nowhere() {
         drop(fs::remove_file(&path));
         fifo(&path);
         let (run, _) = ended(&workspace, arguments);
-        // Signals end what waits; nothing had to be ended.
+        // Signals end the commands that wait; no process had to be killed.
         let wanted = if says.is_empty() { [Some(0), Some(1)] } else { [Some(2), Some(2)] };
         assert!(wanted.contains(&run.code), "{place}: {}", run.shown());
         assert!(run.err().contains(says), "{place}: {}", run.shown());
@@ -475,7 +477,7 @@ fn a_grading_ends_by_the_first_signal_although_nobody_reads_what_it_writes() {
         program(&workspace, format!("class/{number}{}", "x".repeat(200)), 3);
     }
     let mut command = workspace.command();
-    // Nobody reads standard output and error, and the report is longer than a pipe.
+    // No process reads standard output and standard error, and the report is larger than a pipe's buffer.
     let arguments = ["grade", "--suite", "suite.toml", "class", "--output", "grades", "--format", "json"];
     let mut child = command.args(arguments).spawn().expect("a start");
     let reported = || workspace.path("grades/index.html").exists();

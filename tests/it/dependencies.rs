@@ -1,4 +1,4 @@
-//! The licenses of others' packages, and which Rust they ask for: from cargo's own data.
+//! The licenses and minimum Rust versions of external packages, from cargo's own data.
 use crate::workspace::root;
 use serde_json::Value;
 use std::{
@@ -6,10 +6,10 @@ use std::{
     sync::OnceLock,
 };
 
-/// Programs are run on this platform only; packages of others are not downloaded.
+/// Programs run only on this platform. Packages for other platforms are not downloaded.
 const PLATFORM: &str = "x86_64-unknown-linux-gnu";
 
-/// Packages with their licenses, as cargo tells of them.
+/// Returns cargo's metadata of the packages, with their licenses.
 #[expect(clippy::disallowed_types, reason = "cargo is a program")]
 fn metadata() -> &'static Value {
     static METADATA: OnceLock<Value> = OnceLock::new();
@@ -32,7 +32,7 @@ fn string(value: &'static Value) -> &'static str {
     value.as_str().unwrap_or_default()
 }
 
-/// The licenses that `deny.toml` allows, from which this test and cargo-deny take them.
+/// Returns the licenses that `deny.toml` allows. This test and cargo-deny both read them there.
 fn allowed() -> BTreeSet<String> {
     let rules = std::fs::read_to_string(root().join("deny.toml")).expect("rules");
     let list =
@@ -40,9 +40,9 @@ fn allowed() -> BTreeSet<String> {
     list.split('"').skip(1).step_by(2).map(str::to_owned).collect()
 }
 
-/// Whether some choice that an SPDX expression offers is allowed.
+/// Returns whether one of the choices of an SPDX expression is allowed.
 fn is_allowed(expression: &str, allowed: &BTreeSet<String>) -> bool {
-    // No expression in use nests deeper than `(A OR B) AND C`.
+    // No expression in use is nested more deeply than `(A OR B) AND C`.
     let any = |group: &str| {
         let group = group.trim_matches(['(', ')', ' ']);
         group.split(" OR ").any(|license| license.split(" AND ").all(|license| allowed.contains(license)))
@@ -51,7 +51,7 @@ fn is_allowed(expression: &str, allowed: &BTreeSet<String>) -> bool {
     if expression.contains('(') { expression.split(" AND ").all(any) } else { any(&expression) }
 }
 
-/// A version's first two numbers, which compare as versions do.
+/// Returns the first two numbers of a version, which compare like versions.
 fn version(text: &str) -> Vec<u32> {
     text.split('.').take(2).map(|part| part.parse().expect("a number")).collect()
 }
@@ -82,7 +82,7 @@ fn everybody_may_use_what_is_compiled() {
     assert!(refused.is_empty(), "not in deny.toml: {refused:#?}");
 }
 
-/// The Rust that a manifest promises is enough for everything that is compiled for it.
+/// The Rust version in a manifest can compile all dependencies.
 #[test]
 fn the_promised_rust_compiles_all_dependencies() {
     let packages = packages();

@@ -9,7 +9,7 @@ fn detect(workspace: &Workspace, words: &str) -> Run {
     workspace.run(["detect"].into_iter().chain(words.split(' ')))
 }
 
-/// The answer as JSON, checked against its schema.
+/// Returns the answer as JSON, checked against its schema.
 fn answer(workspace: &Workspace, words: &str) -> Value {
     let run = detect(workspace, &format!("{words} --format json"));
     assert_eq!((run.code, run.err().as_str()), (Some(0), ""), "{words}");
@@ -21,7 +21,7 @@ fn coefficients(json: &Value, number: usize) -> Vec<f64> {
     list.iter().map(|value| value.as_f64().unwrap()).collect()
 }
 
-/// The worked examples of the assignment; both stand in the help.
+/// The worked examples of the assignment; both are in the help.
 #[test]
 fn the_assignments_examples() {
     let workspace = Workspace::new();
@@ -41,7 +41,7 @@ fn the_assignments_examples() {
 #[test]
 fn a_ball_meets_a_half_plane() {
     let workspace = Workspace::new();
-    // The ball of the format's description: it touches at half the step.
+    // The ball of the example in the format's description touches the half-plane after half the step.
     let run = detect(&workspace, "ph:0,0.5+0,-0.5:0,0:0,1 --radii 0.25");
     insta::assert_snapshot!("detect_half_plane", run.shown());
     let json = answer(&workspace, "ph:0,0.5+0,-0.5:0,0:0,1 --radii 0.25");
@@ -52,7 +52,7 @@ fn a_ball_meets_a_half_plane() {
     assert_eq!(later["answer"]["collides"], false);
 }
 
-/// A scene's pair is what the step's trace logs for it.
+/// The polynomials of a scene's pair are the ones that the step's trace logs.
 #[test]
 fn a_pair_of_a_scene_is_what_the_trace_logs() {
     let workspace = Workspace::with_trace(BEAM);
@@ -94,7 +94,8 @@ fn a_pair_of_a_scene_is_what_the_trace_logs() {
 fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
     let workspace = Workspace::with_trace(BOUNCE);
     let mut trace = workspace.read("trace.bin");
-    // The first coefficient of the end record of step 1: state, one impulse, two counts, the first size.
+    // This is the place of the first coefficient in the end record of step 1: after the state, one impulse, two counts
+    // and the first size.
     let (record, place) = (32 + 4 + 4, 32 + 4 + 36 + 4 + 4);
     let mid = 32 + 4 + 36 + 4 + (4 + 24) + (4 + 16);
     let place = record + mid + place;
@@ -109,8 +110,8 @@ fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
     assert!(run.out().contains(table), "{}", run.shown());
 }
 
-/// A factor keeps round-off that the course's library drops of the reference's polynomials: those of the trace are
-/// right all the same, and found in their places although they lead to more passes.
+/// With a factor, a program keeps round-off that the course's library drops from the reference's polynomials. The
+/// trace's polynomials are still right, and they are found in their places although they lead to more passes.
 #[test]
 fn what_a_factor_keeps_makes_no_polynomial_wrong() {
     let workspace = Workspace::new();
@@ -133,8 +134,8 @@ fn what_a_factor_keeps_makes_no_polynomial_wrong() {
     assert!(kept > 0);
 }
 
-/// From the trace's own mid record; and where the trace leaves pairs out, what it has for the others is found all the
-/// same.
+/// The pair is found from the trace's own mid record. If the trace omits pairs, the polynomials of the others are still
+/// found.
 #[test]
 fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     let workspace = Workspace::new();
@@ -187,7 +188,7 @@ fn what_can_not_be_looked_at_is_said() {
     ] {
         let run = detect(&workspace, words);
         if words.starts_with("pp:1e200") {
-            // Parabolas have closed forms: infinities lead nowhere, and nothing hangs.
+            // Parabolas have closed forms: infinite values have no result, but the program does not hang.
             assert_eq!(run.code, Some(0), "{}", run.shown());
             continue;
         }
@@ -203,7 +204,7 @@ fn what_can_not_be_looked_at_is_said() {
     );
 }
 
-/// A pair that is wrong in a later pass is looked at there: in the first one nothing is wrong.
+/// A pair that is wrong in a later pass is examined in that pass, because in the first pass nothing is wrong.
 #[test]
 fn the_pair_of_a_later_pass_is_looked_at_in_that_pass() {
     let workspace = Workspace::new();

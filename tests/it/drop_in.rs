@@ -241,7 +241,7 @@ fn outputs_that_cannot_be_opened_are_said_in_the_originals_words() {
     assert_eq!(workspace.read("scene.xml"), BOUNCE.as_bytes());
 }
 
-/// A scene whose trace is larger than a pipe's buffer of 64 KiB.
+/// Returns a scene whose trace is larger than a pipe's buffer of 64 KiB.
 fn long_drift() -> String {
     DRIFT.replace(r#"time="1""#, r#"time="2000""#)
 }
@@ -255,7 +255,7 @@ fn a_pipe_that_is_read_slowly_gets_the_whole_trace() {
     let mut reader =
         Command::new("sh").args(["-c", "exec 3<\"$0\"; sleep 0.3; cat <&3 >\"$0.got\""]).arg(&pipe).spawn().unwrap();
     let run = loop {
-        // Without a reader yet the pipe can't be opened.
+        // A pipe without a reader cannot be opened.
         let run = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "pipe"]);
         if run.code == Some(0) || !run.err().contains("Failed to open binary output file") {
             break run;
@@ -286,7 +286,7 @@ fn nobody_listening_changes_neither_exit_code_nor_files() {
     assert!(workspace.exists("residual.txt"));
 }
 
-/// Ten balls, each with a velocity of its own, so that every pass logs polynomials of full length.
+/// Returns a scene of ten balls with different velocities, so that every pass logs polynomials of full length.
 fn ten_balls(rounds: u32) -> String {
     let ball = |number: u32| {
         let i = f64::from(number);
@@ -302,14 +302,14 @@ fn ten_balls(rounds: u32) -> String {
 
 #[test]
 fn an_impulse_loop_that_never_converges_fails_however_long_its_record_is() {
-    // The response changes velocities only, so every one of the rounds finds the same collisions.
+    // The response changes only velocities, so all rounds find the same collisions.
     let row = student::find("response-velocities-only").expect("a known mistake");
     let scene = scene::read("scene.xml", ten_balls(10_000).as_bytes()).expect("a scene").scene;
     let trace = student::record_trace(&scene, student::Student::new(Some(row.mistake))).expect("a trace");
     assert!(trace.len() > 40_000_000, "one record is as long as its rounds make it: {}", trace.len());
     let workspace = Workspace::new();
     workspace.write("trace.bin", trace);
-    // In a scene that allows no such record it is as wrong, and says the same.
+    // A scene that does not allow such a record gives the same verdict and text.
     for rounds in [10_000, 5] {
         workspace.write("scene.xml", ten_balls(rounds));
         let run = workspace.original(GRADE);

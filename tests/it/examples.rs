@@ -1,4 +1,4 @@
-//! The programs in `examples`, each with the input that its first line asks for.
+//! The programs in `examples`, each with the input that its first line requires.
 use crate::workspace::{Workspace, root, submission};
 use fosssim_oracle::{sandbox::Supervisor, suite::library};
 use fosssim_testing::{Need, skip};
@@ -19,7 +19,7 @@ mod render;
 #[path = "../../examples/walk.rs"]
 mod walk;
 
-/// The scene of the README's first command, and the wrong trace that comes with it.
+/// Returns the scene of the README's first command, and the wrong trace that comes with it.
 fn flawed() -> (&'static [u8], Vec<u8>) {
     let scene = library::scene("ContinuousTimeTests/spinning-edge-sweeps-balls").expect("an embedded scene");
     (scene, std::fs::read(root().join("examples/traces/flawed.bin")).expect("a trace"))

@@ -1,4 +1,4 @@
-//! Explanations: what is said of each known mistake, by one trace and by several.
+//! Explanations of each known mistake, by one trace and by several.
 use super::{
     corpus,
     fair::{assets, rows, simulated},
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::process::Command;
 
-/// Scenes that show most of what programs do: a teacher's small suite.
+/// Scenes that show most mistakes of programs: a teacher's small suite.
 const SCENES: [&str; 16] = [
     "ContinuousTimeTests/explicit-euler-under-gravity",
     "ContinuousTimeTests/impact-exactly-at-step-end",
@@ -43,7 +43,8 @@ fn suite() -> Vec<(String, Scene)> {
     scenes
 }
 
-/// The explanations of the row's traces that the fair rules reject; after the first two only which known mistake it is.
+/// Returns the explanations of the row's traces that the fair rules reject. After the first two, only the known
+/// mistakes are searched.
 fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let mut found = Vec::new();
@@ -79,8 +80,8 @@ fn nine_of_ten_mistakes_are_named_first() {
     assert!(10 * confused.len() <= rows.len(), "{confused:#?}");
 }
 
-/// The mistakes of the corpus's submissions, by name: where the fair rules refuse one of their
-/// traces, that is named first, or told with what this trace can't tell it from.
+/// The mistakes of the corpus's submissions, by name. If the fair rules reject one of their traces, the mistake is
+/// named first, or reported together with mistakes that this trace cannot distinguish from it.
 const SUBMISSIONS: [(&str, &str); 27] = [
     ("b02-", "pp-no-two"),
     ("b03-", "pp-radii-squared-apart"),
@@ -140,8 +141,8 @@ fn what_submissions_of_the_corpus_do_wrong_is_named() {
     corpus::ran("what_submissions_of_the_corpus_do_wrong_is_named", named.len());
 }
 
-/// No correct variant is accused of anything: the fair rules accept it, and nobody asks. Where one is asked about all
-/// the same, nothing is named; save for those that are known to be accused, which are so still. Who mends that shortens
+/// No correct variant is reported as wrong: the fair rules accept it, so no explanation is requested. If an explanation
+/// is requested anyway, it names nothing, except for the variants in this list. A fix for one of them removes it from
 /// the list.
 #[test]
 fn correct_variants_are_not_accused() {
@@ -195,7 +196,7 @@ fn a_dropped_term_is_named_with_an_example() {
     assert!(!text.contains("expected") && !text.contains("t^2"), "no value: {text}");
 }
 
-/// One wrong coefficient, one name and one expected number for it, whichever book speaks.
+/// One wrong coefficient has one name and one expected value, in both rule books.
 #[test]
 fn the_headline_names_the_coefficient_that_differs() {
     let workspace = Workspace::new();
@@ -245,7 +246,7 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
     for (id, accepted) in [("", true), ("failsafe-angular-overwritten", false), ("pe-linear-one-sh", false)] {
         let name = if id.is_empty() { "fosssim-sample".to_owned() } else { format!("fosssim-sample.{id}") };
         std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path(&name)).expect("a link");
-        // Up and down again: paths are given as shells complete them.
+        // The path goes up and down again, as shells complete paths.
         std::fs::create_dir_all(workspace.path("build")).expect("a folder");
         let run = workspace.run(["explain", "--program", &format!("build/../{name}"), "--format", "json"]);
         if run.code == Some(2) && run.err().contains("sandbox") {
@@ -269,7 +270,7 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
     let run = workspace.run(["shrink", program, SPINNING, "--output", "small.xml"]);
     assert!(run.code == Some(1) && run.out().contains("The smallest scene: 3 bodies, 1 step"), "{}", run.shown());
     assert!(run.out().contains("<- differs") && run.out().contains("By hand\nPass 1: "), "{}", run.shown());
-    // It is wrong for the same reason when it is run again.
+    // A second run is wrong for the same reason.
     let again = workspace.run(["shrink", program, "small.xml", "--format", "json"]);
     let again = schemas::valid("explain", &again.stdout);
     assert_eq!(again["common"]["key"], "pe-linear-one-sh");
@@ -291,7 +292,7 @@ fn wrong_usage_is_said() {
     assert!(run.err().contains("missing"), "{}", run.err());
 }
 
-/// A program that writes no trace is told by its end and its own words, and text is no trace.
+/// If a program writes no trace, the report contains how it ended and its output. Text is not a trace.
 #[test]
 fn without_a_trace_there_is_nothing_to_explain() {
     let Some(workspace) = grading::workspace() else { return };
@@ -307,7 +308,8 @@ fn without_a_trace_there_is_nothing_to_explain() {
     assert!(run.code == Some(2) && run.err().contains("is not a trace: it looks like text"), "{}", run.shown());
 }
 
-/// The library of T1M3 takes implicit integrators, refuses another and knows no collisions, whatever a student wrote.
+/// The library of T1M3 runs implicit integrators, rejects one other and has no collisions, whatever a student's code
+/// contains.
 #[test]
 fn a_program_of_another_milestone_is_known_by_the_scenes_that_it_takes() {
     let Some(workspace) = grading::workspace() else { return };
@@ -321,7 +323,7 @@ fn a_program_of_another_milestone_is_known_by_the_scenes_that_it_takes() {
     let told = "it looks like a program of Theme 1, Milestone 3, which is not the milestone of this suite";
     assert!(run.code == Some(1) && run.out().contains(told) && run.out().lines().count() < 8, "{}", run.shown());
     assert!(run.out().contains(": grade it with --suite t1m3"), "{}", run.shown());
-    // A suite of one's own has a milestone, too; only a reader at a terminal can type an option.
+    // A teacher's own suite also has a milestone. Only a reader at a terminal can type an option.
     assert_eq!(workspace.run(["suite", "init", "-o", "course.toml"]).code, Some(0));
     let page = ["--suite", "course.toml", "--scene", "GeometricTests/b*", "--format", "html=older.html"];
     let run = workspace.run([&["grade", "older"][..], &page].concat());
@@ -331,7 +333,7 @@ fn a_program_of_another_milestone_is_known_by_the_scenes_that_it_takes() {
     assert!(run.code == Some(1) && run.err().contains("program of Theme 1, Milestone 3"), "{}", run.shown());
 }
 
-/// The small scenes are those of the program's milestone.
+/// The small scenes belong to the program's milestone.
 #[test]
 fn a_program_of_any_milestone_is_explained() {
     let Some(workspace) = grading::workspace() else { return };

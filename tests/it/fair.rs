@@ -15,7 +15,7 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// Scenes that together catch nearly every mistake, so that few others need to be tried.
+/// Scenes that together detect nearly every mistake, so that few others are needed.
 const FIRST: [&str; 9] = [
     "ContinuousTimeTests/explicit-euler-under-gravity",
     "GeometricTests/ball-on-a-fixed-edge",
@@ -56,7 +56,7 @@ fn no_mistake_passes_the_fair_rules() {
     let missed: Vec<&str> = rows(student::RowKind::Wrong)
         .into_par_iter()
         .filter(|row| {
-            // Where the mistake makes the program go on forever, there is no whole trace to pass.
+            // If the mistake makes the program run forever, there is no complete trace to accept.
             !scenes.iter().any(|(_, scene)| {
                 simulated(scene, Some(row))
                     .is_none_or(|trace| judged(scene, &trace, 1).1.verdict == FairVerdict::Rejected)
@@ -67,13 +67,13 @@ fn no_mistake_passes_the_fair_rules() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// Variants whose own roundings decide whether something touches exactly at the end of a step. In scenes that ask just
-/// that, from numbers with few digits, what follows may be another motion.
+/// Variants whose own rounding decides whether bodies touch exactly at the end of a step. In scenes that test exactly
+/// this with short numbers, the motion afterwards may differ.
 const ROUNDING: [&str; 3] = ["normalized-norm", "through-bernstein", "frame-rotated"];
 
-/// Scale and arithmetic change the logged bits, never what happens, and the fair rules accept them.
-/// `scale-1e-6` makes the course's library drop real coefficients; where that changes a decision the program really
-/// does something else, and the report says that this is why.
+/// Scale and arithmetic change the logged bits but not the motion, and the fair rules accept them. `scale-1e-6` makes
+/// the course's library drop real coefficients. If that changes a decision, the program really moves differently, and
+/// the report gives this as the reason.
 #[test]
 fn every_correct_variant_moves_as_the_correct_sample_and_passes_the_fair_rules() {
     let scenes: Vec<(String, Scene, Vec<f64>)> = assets()
@@ -94,7 +94,7 @@ fn every_correct_variant_moves_as_the_correct_sample_and_passes_the_fair_rules()
             let moved = states(scene, &trace);
             let close = moved.len() == correct.len()
                 && moved.iter().zip(correct).all(|(ours, right)| (ours - right).abs() < 1e-9);
-            // Past the end of a tiny edge the vector to the end is another one, by some 1e-9.
+            // Beyond the end of a tiny edge, the vector to the end differs by about 1e-9.
             let is_excused = name.contains("tiny-edge") && row.id == "pe-contact-clamped"
                 || name.contains("exactly") && ROUNDING.contains(&row.id);
             let fair = judged(scene, &trace, 1).1;
@@ -123,9 +123,9 @@ fn states(scene: &Scene, trace: &[u8]) -> Vec<f64> {
     states
 }
 
-/// Two balls fall side by side: their relative motion is round-off, which the course's library drops of the
-/// assignment's polynomials and keeps of those with a factor. What its root finder then makes of them, a collision far
-/// from either ball, is no mistake of the program.
+/// Two balls fall side by side. Their relative motion is round-off, which the course's library drops from the
+/// assignment's polynomials but keeps in those with a factor. The root finder may then report a collision far from both
+/// balls, which is not the program's mistake.
 #[test]
 fn a_factor_that_keeps_round_off_is_no_mistake() {
     let text = r#"<scene><duration time="0.4"/><integrator type="symplectic-euler" dt="0.02"/>
@@ -155,8 +155,8 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
     assert_eq!(of("scale-3").form, Form::Course);
 }
 
-/// A pair of balls falls side by side, so that its approach is only round-off. A formula with the displacement of one
-/// ball has another value there, which only a program that divides polynomials by their size could have.
+/// A pair of balls falls side by side, so its approach is only round-off. A formula with the displacement of one ball
+/// gives another value, which only a program that divides polynomials by their size could log.
 #[test]
 fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
     struct FirstAlone;
@@ -185,8 +185,8 @@ fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
     assert_eq!(fair.verdict, FairVerdict::Accepted, "{:?}", fair.findings.first_divergence);
 }
 
-/// One polynomial in the right form among others that are the course's bit for bit: its t^3, which the right form
-/// lacks, is lost.
+/// One polynomial has the right form, and all others have the course's exact bits. Its t^3 coefficient, which the right
+/// form does not have, is dropped.
 #[test]
 fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     let scenes = assets();
@@ -210,8 +210,8 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     assert_eq!(fair.findings.counts.total(), 1);
 }
 
-/// Polynomials of particles and edges with a small factor, on the course's scenes: what is gone of their approaches
-/// says nothing of the form.
+/// Polynomials of particles and edges with a small factor, on the course's scenes: dropped coefficients of their
+/// approaches say nothing about the form.
 #[test]
 fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     struct Edges(f64);
@@ -245,7 +245,7 @@ fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     corpus::ran("a small factor of edges", files.len());
 }
 
-/// The findings of the fair rules do not depend on how many threads look.
+/// The results of the fair rules do not depend on the number of threads.
 #[test]
 fn threads_change_nothing() {
     for (name, scene) in assets().iter().take(FIRST.len()) {
@@ -260,7 +260,7 @@ fn threads_change_nothing() {
     }
 }
 
-/// A row of the corpus that the fair rules accept though its author meant it to be wrong, and why.
+/// Rows of the corpus that the fair rules accept although their authors meant them to be wrong, with the reasons.
 const HARMLESS: [(&str, &str, &str); 3] = [
     ("b26-pe-const-alpha-vel", "ImpulsesTests/test02", "the edge is fixed: the other formula is a positive multiple"),
     ("x-state-neg-zero", "ContinuousTimeTests/test00", "zeros of the other sign are the same numbers"),
@@ -271,7 +271,7 @@ const HARMLESS: [(&str, &str, &str); 3] = [
     ),
 ];
 
-/// A correct submission that the fair rules refuse, and why.
+/// Correct submissions that the fair rules reject, with the reasons.
 const REFUSED: [(&str, &str, &str); 1] = [(
     "altroot",
     "ContinuousTimeTests/test06",
@@ -302,7 +302,7 @@ fn the_corpus_is_judged_fairly() {
             };
             let is_right =
                 row["trace_equals_reference"] == true || text("kind") == "a" && !listed(&REFUSED) || listed(&HARMLESS);
-            // A real submission's and a hostile one's traces may be right: then the original accepts them, too.
+            // The traces of real and hostile submissions may be right; in that case the original accepts them, too.
             let may_be_right = matches!(text("kind"), "real" | "f") && parity == "passed";
             let expected = if may_be_right { accepted } else { is_right };
             let name = format!("{} {}: parity {parity}, {fair:?}", text("submission"), text("scene"));

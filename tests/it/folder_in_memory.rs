@@ -1,4 +1,4 @@
-//! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
+//! A working folder in memory: the kernel's limits there, and the grader's access to it.
 use crate::sandbox::{backend, small};
 use fosssim_oracle::sandbox::{
     Backend, Job, Layer, Limits, Policy, RemainingFolder, RunEnd, RunOutcome, collect::OpenFolder,
@@ -7,13 +7,13 @@ use fosssim_testing::{Need, skip};
 use std::io::Read;
 use std::path::Path;
 
-/// A shell at work in a folder that holds `input`, as a build step.
+/// Returns a job that runs a shell in a folder that contains `input`, like a build step.
 fn job(folder: &Path, script: &str) -> Job {
     std::fs::write(folder.join("input"), "given").unwrap();
     Job::new("/bin/sh", folder).arguments(["-c", script]).policy(Policy::Tools).limits(small()).folder_in_memory()
 }
 
-/// The sandbox, where it has namespaces.
+/// Returns the sandbox if it has namespaces.
 pub fn with_namespaces() -> Option<&'static Backend> {
     let backend = backend()?;
     let active = backend.layers().iter().any(|report| report.layer == Layer::Namespaces && report.active);
@@ -63,7 +63,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
         assert_eq!((outcome.ended, left.memory_folder().is_some()), (RunEnd::Exited(0), true));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
-    // Build tools, and folders on the disk.
+    // This job uses build tools and folders on the disk.
     let tools = read(folder.path()).folder_in_memory().policy(Policy::Tools);
     for job in [tools, read(folder.path())] {
         assert_eq!(String::from_utf8_lossy(&run(backend, &job).0.stdout.bytes), sizes);
@@ -79,7 +79,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
 fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let Some(backend) = with_namespaces() else { return };
     let folder = tempfile::tempdir().unwrap();
-    // Each file is within the limit of file sizes. Together they would be 40 MiB, before the supervisor looks again.
+    // Each file is within the limit of file sizes. Together they would be 40 MiB before the supervisor's next check.
     let script = "for i in 1 2 3 4 5 6 7 8 9 10; do head -c 4000000 /dev/zero | tr '\\0' x > f$i; done; sleep 1000";
     let limits = Limits { memory: 256 << 20, ..small() };
     let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));

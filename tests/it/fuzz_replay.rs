@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 #[path = "../../fuzz/entries.rs"]
 mod entries;
 
-/// The seeds of a target, in the order of their names.
+/// Returns the seeds of a target, in the order of their names.
 fn seeds(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/seeds").join(target);
     let mut paths: Vec<PathBuf> =
@@ -74,7 +74,7 @@ fn wire_seeds_do_no_harm() {
     assert!(messages > 4, "{messages} messages in all seeds");
 }
 
-/// Every collision type with states of every absurd size is among the seeds of the judge.
+/// The judge's seeds include every collision type with extreme states of all sizes.
 #[test]
 fn every_extreme_of_every_collision_type_is_a_seed() {
     let seeds = seeds("judge");
@@ -86,7 +86,7 @@ fn every_extreme_of_every_collision_type_is_a_seed() {
     }
 }
 
-/// The sound seeds are recordings of the target's scenes, so that mutations start from traces that pass.
+/// The valid seeds are recordings of the target's scenes, so that mutations start from accepted traces.
 #[test]
 fn every_scene_of_the_trace_target_has_its_recording_as_a_seed() {
     let seeds = seeds("trace");

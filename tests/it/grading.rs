@@ -1,7 +1,7 @@
-//! Grading programs as a user does: real processes in the real sandbox.
+//! Grades programs as a user does, with real processes in the real sandbox.
 //!
-//! The submissions are `fosssim-sample` under links that name their mistakes. Where the sandbox can't be had, the tests
-//! say so and are skipped.
+//! The submissions are links to `fosssim-sample` whose names give their mistakes. Without a sandbox, the tests print a
+//! message and are skipped.
 mod platforms;
 mod programs;
 
@@ -20,7 +20,7 @@ pub(crate) const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nh
                      points = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
-/// A workspace with a suite, or nothing if programs can't be run safely.
+/// Returns a workspace with a suite, or `None` if programs cannot run safely.
 pub(crate) fn workspace() -> Option<Workspace> {
     let workspace = Workspace::new();
     workspace.write("suite.toml", SUITE);
@@ -33,8 +33,8 @@ pub(crate) fn workspace() -> Option<Workspace> {
     }
 }
 
-/// Puts sample submissions into `submissions/`, and gives their paths; an empty name is the correct one. They are
-/// links, which are graded only by name.
+/// Puts sample submissions into `submissions/` and returns their paths. An empty name is the correct program. The
+/// submissions are links, which are graded only if the command line names them.
 pub(crate) fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
     std::fs::create_dir_all(workspace.path("submissions")).expect("a folder");
     let submit = |mistake: &&str| {
@@ -46,7 +46,7 @@ pub(crate) fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
     mistakes.iter().map(submit).collect()
 }
 
-/// Submission, verdict and points of every row of a grades.csv.
+/// Returns the submission, verdict and points of every row of a grades.csv.
 fn rows(csv: &[u8]) -> Vec<(String, String, String)> {
     let mut reader = csv::Reader::from_reader(csv);
     let row = |record: csv::StringRecord| (record[0].to_owned(), record[1].to_owned(), record[2].to_owned());
@@ -140,7 +140,7 @@ fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
     assert!(both.out().contains("by the original's rules (the fair rules differ in "), "{}", both.shown());
     let scenes = String::from_utf8(workspace.read("out/scenes.csv")).expect("text");
     assert!(scenes.contains(",absolute_coefficients"), "{scenes}");
-    // In the same folder, results by other rules are not used for these rules.
+    // In the same folder, results of other rules are not used for these rules.
     let fair = grade(&["--rules", "fair"]);
     assert_eq!(fair.code, Some(0), "{}", fair.shown());
     let parity = grade(&["--rules", "parity"]);
@@ -213,7 +213,7 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     let log = workspace.read("whole/logs/fosssim-sample.escape-codes.log");
     assert!(!log.contains(&0x1b), "{}", String::from_utf8_lossy(&log));
 
-    // Interrupted as soon as the first results are kept, twice, then to its end.
+    // The grading is interrupted when the first results are stored, twice, and then completed.
     for kept in [3, 12] {
         let mut child = workspace
             .command()
@@ -238,7 +238,8 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     assert!(resumed.err().contains(" results from parts"), "{}", resumed.shown());
     let mut resumed = rows(&workspace.read("parts/grades.csv"));
     let mut whole = rows(&workspace.read("whole/grades.csv"));
-    // How far a program that is killed came with its first scene may differ; verdicts may not, nor whole points.
+    // A program that is killed may come a different distance with its first scene. Verdicts and whole points may not
+    // differ.
     for row in resumed.iter_mut().chain(&mut whole) {
         row.2 = row.2.split('.').next().unwrap_or_default().to_owned();
     }
@@ -252,7 +253,7 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     assert_eq!(keys.len(), lines, "nothing was run twice");
 }
 
-/// The flood is as long as the limit, so that program and grader end it at the same time.
+/// The output is exactly as long as the limit, so both the program and the grader may end the run.
 #[test]
 fn a_flood_behind_the_trace_gets_one_verdict_however_busy_the_machine_is() {
     let Some(workspace) = workspace() else { return };
@@ -276,7 +277,7 @@ fn a_flood_behind_the_trace_gets_one_verdict_however_busy_the_machine_is() {
     }
 }
 
-/// Copies, as a class hands them in; what is a link may lead to another's submission.
+/// These are copies, as students submit them, because a link may lead to another student's submission.
 #[test]
 fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() {
     let Some(workspace) = workspace() else { return };
@@ -297,18 +298,19 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         let rows = rows(&workspace.read("one/grades/grades.csv"));
         rows.into_iter().map(|(name, verdict, _)| format!("{name} {verdict}")).collect::<Vec<_>>()
     };
-    // If one file has two names, its owner is unknown. Both entries are graded, and staff gets a warning.
+    // If a file has two names, its owner is unknown. Both entries are graded, and staff gets a warning.
     let passed_over = |name: &str| format!("{name} not graded");
     let graded = ["alice", "bob", "carol", "thief"].map(|name| format!("{name} run-time error"));
     let expected =
         |others: &[&str]| [&graded[..], &others.iter().map(|name| passed_over(name)).collect::<Vec<_>>()].concat();
     for others in [&[".dotted", "mallory"][..], &[".dotted", "grades", "mallory"]] {
-        // The second time the folder for results lies among the submissions.
+        // In the second run the folder for results is among the submissions.
         let class = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades"]);
         assert_eq!(names(&class), expected(others));
         assert!(class.err().contains("skipped mallory: this is a link"), "{}", class.shown());
         assert!(class.err().contains("skipped .dotted: its name begins with a dot"), "{}", class.shown());
-        // A row for each, and what the class comes to; the scenes stand in the folder, and are shown when asked for.
+        // The output has a row for each submission and a summary of the class. The scenes are in the folder, and are
+        // shown on request.
         assert!(class.out().lines().count() < 25 && class.out().contains("Class: 4 submissions"), "{}", class.out());
     }
     let whole = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades", "--verbose"]);
@@ -344,7 +346,7 @@ fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
     assert!(!wrong.is_empty() && wrong.len() < whole.out().lines().count() - 1, "{}", whole.shown());
     let again = grade(&["--failed", "--format", "csv"]);
     assert_eq!((failing(&again), again.out().lines().count() - 1), (wrong.clone(), wrong.len()), "{}", again.shown());
-    // The closing words name the scene and the command, and that command works.
+    // The last lines name the scene and a command, and that command works.
     let text = grade(&["--hints", "what"]);
     let command = text.out().lines().find_map(|line| line.trim().strip_prefix("$ fosssim-oracle ").map(str::to_owned));
     let command = command.unwrap_or_else(|| panic!("{}", text.shown()));
@@ -356,7 +358,7 @@ fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
     assert!(!verdict_only.out().contains("likely mistake"), "{}", verdict_only.shown());
     let missing = grade(&["--scene", "no-such-scene"]);
     assert_eq!(missing.code, Some(2), "{}", missing.shown());
-    // A kept trace is one that `check` takes; tables are of whole suites only.
+    // `check` accepts a kept trace. Only whole suites have tables.
     let kept = grade(&["--scene", &wrong[0], "--keep-traces", "--output", "out"]);
     assert!(!workspace.exists("out/grades.csv") && kept.err().contains("only a part was graded"), "{}", kept.shown());
     let shown = kept.out();
@@ -479,7 +481,7 @@ fn a_grading_that_is_stopped_by_the_platform_keeps_its_partial_results() {
         assert!(child.try_wait().expect("a state").is_none(), "it ended before it was stopped");
         std::thread::yield_now();
     }
-    // `timeout` signals the program and its group: two signals at once.
+    // `timeout` sends a signal to the program and its group, so two signals arrive.
     for _ in 0..2 {
         let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().expect("kill");
         assert!(kill.success());

@@ -1,5 +1,4 @@
-//! Submissions besides a student's own program: a sample that is always wrong, and traces that are there
-//! already.
+//! Submissions other than a student's own program: a sample that is always wrong, and existing traces.
 use crate::{
     grading::{SUITE, workspace},
     workspace::Workspace,
@@ -18,18 +17,18 @@ fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
     let graded = workspace.run(["grade", "flawed", "--suite", "suite.toml", "--format", "csv"]);
     assert_eq!(graded.code, Some(1), "{}", graded.shown());
     assert!(graded.out().contains(",WA,") && graded.out().contains(",pe-square-no-eh"), "{}", graded.shown());
-    // Neither another name nor another wish makes it right.
+    // Neither another name nor another argument makes it right.
     let told = Command::new(workspace.path("flawed")).args(["--mistake", "no-such", "-s", "none.xml"]).output();
     let told = String::from_utf8(told.expect("the program").stderr).expect("text");
     assert!(told.contains("none.xml"), "{told}");
-    // A variant is right, too.
+    // A correct variant is right, too.
     for mistake in ["no-such", "right", "", "pe-square-no-eh,scale-2"] {
         let refused = workspace.run(["demo", "--mistake", mistake, "--program", "other"]);
         assert!(refused.code == Some(2) && refused.err().contains("there is no mistake"), "{}", refused.shown());
     }
 }
 
-/// The program itself can play a right submission, so it must not be one.
+/// The program itself can act as a right submission, so it must not be accepted as one.
 #[test]
 fn the_program_itself_earns_no_points() {
     let Some(workspace) = workspace() else { return };
@@ -88,7 +87,7 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(scenes.len() > 1, "{listing}");
     for scene in &scenes {
         for (folder, mistake) in [("right", None), ("wrong", Some("pe-square-no-eh"))] {
-            // Under the whole name, or the last part of it.
+            // The file has the scene's full name, or the last part of it.
             let name = if folder == "right" { scene } else { scene.rsplit('/').next().expect("a name") };
             let trace = workspace.path(format!("{folder}/{name}.bin"));
             std::fs::create_dir_all(trace.parent().expect("a folder")).expect("a folder");
@@ -113,12 +112,12 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(wrong.out().contains(",WA,") && wrong.out().contains(",pe-square-no-eh"), "{}", wrong.out());
     let page = String::from_utf8(workspace.read("wrong.html")).expect("text");
     assert!(page.contains("data-scene="), "the page has a viewer");
-    // A trace under a name that no scene has is told.
+    // A trace whose name belongs to no scene is reported.
     workspace.write("right/ImpulsesTests/typo.bin", b"");
     let stray = grade("right", &[]).err();
     assert!(stray.contains("1 trace belongs to no scene of the suite: ImpulsesTests/typo.bin"), "{stray}");
     std::fs::remove_file(workspace.path("right/ImpulsesTests/typo.bin")).expect("removed");
-    // Packed traces are unpacked; a damaged copy is no trace, and the report says why there is none.
+    // Compressed traces are decompressed. A damaged file is not a trace, and the report gives the reason.
     let plain = grade("right", &["--format", "json"]).out();
     let name = format!("right/{}.bin", scenes[0]);
     let bytes = workspace.read(&name);
@@ -139,7 +138,7 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     assert!(grade("right", &[]).out().contains("the gzip data is cut short"));
     std::fs::remove_file(workspace.path(format!("{name}.gz"))).expect("removed");
     workspace.write(&name, &bytes);
-    // A file that is missing, cut or a link is no trace.
+    // A missing or truncated file, or a link, is not a trace.
     let first = workspace.path(format!("right/{}.bin", scenes[0]));
     let bytes = std::fs::read(&first).expect("a trace");
     std::fs::write(&first, &bytes[..bytes.len() / 2]).expect("cut");

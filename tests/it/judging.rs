@@ -1,4 +1,4 @@
-//! The shortcut of judging for what is right at once: the outcome is that of the full way.
+//! The fast path of judging for right traces has the same outcome as the full path.
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::{Scene, original},
@@ -7,7 +7,7 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// Both ways of judging give the same result for a trace, in every field.
+/// Checks that both paths of judging give the same result for a trace, in every field.
 pub fn compare(name: &str, scene: &Scene, trace: &[u8]) {
     let [one, other] = [false, true].map(|one_by_one| {
         let options =

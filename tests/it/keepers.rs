@@ -1,12 +1,12 @@
-//! Runs of one submission have a supervisor in common, and nothing else.
+//! The runs of one submission share a supervisor, and nothing else.
 use crate::folder_in_memory::with_namespaces;
 use crate::sandbox::deaths::{eventually, kill, process};
 use crate::sandbox::small;
 use fosssim_oracle::sandbox::{Backend, Job, Limits, RunEnd, RunningProgram, Supervisor};
 use std::{fs, os::unix::fs::PermissionsExt, path::Path};
 
-/// Waits a moment, so that it can be looked at; then it ends by itself. Every test has another moment, by which its
-/// program is known.
+/// A program that waits for a moment, so that tests can examine it, and then ends. Each test uses a different time, by
+/// which its program is recognized.
 struct Bench {
     words: [String; 2],
     folder: tempfile::TempDir,
@@ -26,7 +26,7 @@ impl Bench {
         process(&self.words.each_ref().map(String::as_str))
     }
 
-    /// The program at work, the run's supervisor and the keeper.
+    /// Returns the running program, the run's supervisor and the keeper.
     fn family(&self) -> [i32; 3] {
         let (program, supervisor) = eventually(|| self.process());
         let status = fs::read_to_string(format!("/proc/{supervisor}/status")).expect("the supervisor");
@@ -39,7 +39,7 @@ fn finish(running: RunningProgram) -> RunEnd {
     running.wait().expect("an outcome").ended
 }
 
-/// A backend whose keepers no other test has.
+/// Returns a backend whose keepers no other test uses.
 fn alone() -> Option<Backend> {
     with_namespaces()?;
     Some(
@@ -119,7 +119,7 @@ fn a_run_is_told_its_own_processor_time_alone() {
     assert!(4 * short < long, "{short:?} after a run of {long:?}");
 }
 
-/// A wall that stops or refuses a hostile program in a keeper's first run does so in a later one.
+/// A layer of protection that stops or rejects a hostile program in a keeper's first run also does so in later runs.
 #[test]
 fn walls_stand_for_every_run_of_a_keeper() {
     if with_namespaces().is_none() {

@@ -1,5 +1,5 @@
 //! Graders that are killed at any moment, and graders that cannot see each other: nothing is lost, done twice,
-//! different or left behind. `scripts/kill-test` does the same many times more.
+//! different or left behind. `scripts/kill-test` repeats this many times.
 use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -15,8 +15,8 @@ const SUITE: &str = "schema = 1\nname = \"killed\"\n[build]\ncommand = [\"sh\", 
 const SUBMISSIONS: usize = 3;
 const SCENES: usize = 2;
 
-/// Submissions `class/*`, a suite that builds them, and an empty temporary folder `tmp`. Each build leaves a daemon.
-/// The first two programs are equal.
+/// Returns a workspace with submissions `class/*`, a suite that builds them, and an empty temporary folder `tmp`. Each
+/// build leaves a daemon. The first two programs are equal.
 fn class() -> Option<Workspace> {
     let workspace = Workspace::new();
     let doctor = workspace.run(["doctor"]);
@@ -43,14 +43,14 @@ fn grading(workspace: &Workspace, output: &str) -> Command {
     command
 }
 
-/// Submission, verdict and points of every row, in the order of the names.
+/// Returns the submission, verdict and points of every row, in the order of the names.
 fn results(workspace: &Workspace, output: &str) -> BTreeSet<Vec<String>> {
     let bytes = workspace.read(format!("{output}/grades.csv"));
     let mut reader = csv::Reader::from_reader(&bytes[..]);
     reader.records().map(|row| row.expect("a row").iter().take(4).map(str::to_owned).collect()).collect()
 }
 
-/// The journal contains no result twice, and as many results as that of an undisturbed grading.
+/// Checks that the journal contains no result twice, and as many results as that of an undisturbed grading.
 fn assert_undisturbed(workspace: &Workspace, output: &str, run: &Run) {
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results(workspace, output), results(workspace, "whole"), "{}", run.shown());
@@ -69,7 +69,7 @@ fn assert_undisturbed(workspace: &Workspace, output: &str, run: &Run) {
     assert!(same("student0") && same("student1") && !same("student2"), "{grades}");
 }
 
-/// Processes that have to do with the folder, by their environment or what they run.
+/// Returns the processes that belong to the folder, according to their environment or their program.
 fn processes_of(folder: &Path) -> Vec<String> {
     let folder = folder.as_os_str().as_encoded_bytes();
     let concerns = |bytes: &[u8]| bytes.windows(folder.len()).any(|window| window == folder);
@@ -90,7 +90,7 @@ fn processes_of(folder: &Path) -> Vec<String> {
 fn assert_nothing_left(workspace: &Workspace) {
     let left: Vec<_> = fs::read_dir(workspace.path("tmp")).expect("the folder").flatten().map(|e| e.path()).collect();
     assert!(left.is_empty(), "left behind: {left:?}");
-    // Supervisors notice the end of their grader at once, if the machine lets them.
+    // Supervisors notice the end of their grader immediately, if the machine is not too busy.
     let patience = Instant::now() + Duration::from_secs(60);
     while !processes_of(&workspace.path("")).is_empty() {
         assert!(Instant::now() < patience, "left behind: {:?}", processes_of(&workspace.path("")));
@@ -103,7 +103,7 @@ fn graders_killed_at_any_moment_lose_and_leave_nothing() {
     let Some(workspace) = class() else { return };
     let whole = finish(&mut grading(&workspace, "whole"));
     assert_eq!(whole.code, Some(0), "{}", whole.shown());
-    // The moments do not matter: each is as good as any other.
+    // The exact moments do not matter.
     for moment in [0, 15, 45, 90, 130, 170, 220, 300] {
         let mut grader =
             grading(&workspace, "out").stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("a grader");
@@ -116,7 +116,7 @@ fn graders_killed_at_any_moment_lose_and_leave_nothing() {
     assert_nothing_left(&workspace);
 }
 
-/// Like two containers that share a temporary folder: neither sees the other's processes.
+/// This is like two containers that share a temporary folder: neither sees the other's processes.
 #[test]
 fn graders_in_process_namespaces_of_their_own_disturb_nobody() {
     let Some(workspace) = class() else { return };
@@ -145,7 +145,7 @@ fn graders_in_process_namespaces_of_their_own_disturb_nobody() {
             assert_undisturbed(&workspace, output, &run.join().expect("a run"));
         }
     });
-    // One whose whole world is ended leaves its folder to the next one, wherever that is.
+    // If all processes of a grader are killed, the next one takes over its folder, on any machine.
     let mut killed = apart("killed").stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("a grader");
     while fs::read_dir(workspace.path("tmp")).expect("the folder").next().is_none() {
         assert!(killed.try_wait().expect("a child of ours").is_none(), "it ended before it had begun");

@@ -7,7 +7,7 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// Small scenes that show most of the mistakes between them.
+/// Small scenes that together show most of the mistakes.
 const SCENES: [&str; 10] = [
     "ContinuousTimeTests/fixed-obstacles",
     "ContinuousTimeTests/head-on-unequal-masses",
@@ -32,11 +32,11 @@ fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Recognized {
-    /// No scene shows the mistake by more than round-off.
+    /// No scene shows the mistake more clearly than round-off.
     Unseen,
     /// The mistake is never named.
     Never,
-    /// The mistake is among those that a trace cannot distinguish from the named one.
+    /// The trace cannot distinguish the mistake from the named one.
     Among,
     /// The mistake is named.
     First,

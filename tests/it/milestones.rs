@@ -1,4 +1,4 @@
-//! The course's milestones: each has a suite of scenes that its programs can run, fair to right ones.
+//! The course's milestones: each has a suite of scenes that its programs can run, and that accepts right programs.
 use super::{
     grading,
     workspace::{Workspace, simulate},
@@ -17,21 +17,21 @@ use fosssim_oracle::{
     suite::plan,
 };
 
-/// Whether the fair rules accept the trace, and the original's.
+/// Returns whether the fair rules accept the trace, and whether the original's rules do.
 fn verdicts(scene: &Scene, trace: &[u8]) -> [bool; 2] {
     let outcome = judge(scene, trace, &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ());
     let fair = outcome.fair.expect("the fair rules were asked").verdict == FairVerdict::Accepted;
     [fair, outcome.parity.overall == Overall::Passed]
 }
 
-/// Whether both books accept the trace.
+/// Returns whether both rule books accept the trace.
 fn accepts(scene: &Scene, trace: &[u8]) -> bool {
     let [fair, parity] = verdicts(scene, trace);
     assert_eq!(fair, parity);
     fair
 }
 
-/// The scenes of a suite, without those that are large so that they can be timed.
+/// Returns the scenes of a suite, without the large ones for time measurements.
 fn scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let plan = plan::find_suite(assignment.key()).unwrap_or_else(|error| panic!("{assignment:?}: {error}"));
     let tasks = plan.scenes().filter(|task| task.scene.particles.len() < 1_000);
@@ -55,14 +55,14 @@ fn a_right_program_is_accepted_on_every_scene_of_its_milestone() {
     for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
         for (name, scene) in scenes(assignment) {
             let trace = student::record_trace(&scene, Student::default()).expect("a trace");
-            // The order of a contest's sums goes on from step to step in the reference alone.
+            // Only in the reference, the order of a contest's sums continues from step to step.
             assert!(assignment == T2M3 || trace == simulate(&scene), "{name}: bit for bit");
             assert!(accepts(&scene, &trace), "{name}");
         }
     }
 }
 
-/// A pull on every particle that the scene does not have is seen wherever a particle is free.
+/// An additional force on every particle is noticed if a particle is free.
 #[test]
 fn a_force_too_much_is_never_accepted() {
     for assignment in [T1M1, T1M2, T1M3, T2M1, T2M3] {
@@ -77,7 +77,7 @@ fn a_force_too_much_is_never_accepted() {
     }
 }
 
-/// A teacher is told where a scene of a suite is beyond what programs of its milestone know.
+/// A teacher gets a message if a scene of a suite needs more than the programs of its milestone can do.
 #[test]
 fn scenes_beyond_a_milestone_are_told_and_own_ones_rejected() {
     let workspace = Workspace::new();
@@ -106,7 +106,7 @@ fn scenes_beyond_a_milestone_are_told_and_own_ones_rejected() {
     assert!(inside.code == Some(0) && inside.out().contains("programs: Theme 1, Milestone 3\n"), "{}", inside.shown());
 }
 
-/// Implicit Euler is optional: who leaves it out has all points, and none of the extra ones.
+/// Implicit Euler is optional: a program without it gets all normal points, and no extra points.
 #[test]
 fn extra_points_are_reported_beside_the_others() {
     let Some(workspace) = grading::workspace() else { return };
@@ -117,8 +117,8 @@ fn extra_points_are_reported_beside_the_others() {
     assert_eq!(run.code, Some(0), "{}", run.shown());
 }
 
-/// The contest's programs may sum their forces in any order, and find layers that the original leaves out; one that
-/// leaves a pair out is refused.
+/// Programs of the contest may sum their forces in any order, and may include layers that the original leaves out. A
+/// program that leaves out a pair is rejected.
 #[test]
 fn forces_of_the_contest_may_be_summed_in_any_order() {
     for (name, scene) in scenes(T2M3) {
@@ -137,7 +137,7 @@ fn forces_of_the_contest_may_be_summed_in_any_order() {
     }
 }
 
-/// The words of that milestone's own original, with times of its own.
+/// The original of that milestone prints its own texts, with its own times.
 #[test]
 fn the_drop_in_speaks_as_the_contests_original() {
     let workspace = Workspace::new();
@@ -155,7 +155,7 @@ fn the_drop_in_speaks_as_the_contests_original() {
     assert_eq!(recorded.out().matches(steps).count(), scene.step_count() as usize);
 }
 
-/// A teacher sees what a suite does not ask for, by what the sample program writes with each known mistake.
+/// A teacher sees the known mistakes that a suite does not detect, according to the sample program's traces.
 #[test]
 fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     let workspace = Workspace::new();
@@ -180,7 +180,7 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     assert!(!implicit.contains("log-") && part(&implicit, "together").1 > 100, "{implicit}");
     let (seen, all) = part(&implicit, "jacobians");
     assert!(10 * seen > 9 * all, "{implicit}");
-    // One scene shows less.
+    // One scene alone shows less.
     let scene = "ContestTests/two-balls-of-different-size";
     let text = format!("schema = 1\nname = \"one\"\n[[group]]\nname = \"one\"\nscenes = [\"asset:t2m3@1/{scene}\"]\n");
     workspace.write("one.toml", text);
@@ -188,7 +188,8 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     assert!(part(&one, "near-pairs").0 < seen_by_all && one.contains("not shown: "), "{one}");
 }
 
-/// Scenes that are right speak, too, and a mistake that only one scene shows is told beside the one that most show.
+/// Scenes with right traces also count, and a mistake that only one scene shows is reported next to the most frequent
+/// one.
 #[test]
 fn a_grade_names_what_its_scenes_show_together() {
     let Some(workspace) = grading::workspace() else { return };

@@ -1,4 +1,4 @@
-//! Graders of ordinary users and on kernels that lack something, tried by root with the program alone.
+//! Graders of ordinary users, and on kernels without some features. Root runs these tests, with only the program.
 use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -10,10 +10,10 @@ use std::{
 const SUITE: &str =
     "schema = 1\nname = \"test\"\n[[group]]\nname = \"g\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\n";
 const BUILD: &str = "[build]\ncommand = [\"sh\", \"build.sh\"]\nprogram = \"FOSSSim\"\n[[group]]";
-/// Nobody, by number.
+/// The user `nobody`, by number.
 const NOBODY: [&str; 3] = ["--reuid=65534", "--regid=65534", "--clear-groups"];
 
-/// Runs a program with some system calls missing (38, ENOSYS) or forbidden (1, EPERM), as on an older kernel.
+/// Runs a program without some system calls: missing (38, ENOSYS) or forbidden (1, EPERM), as on an older kernel.
 const OLDER: &str = r#"
 #include <stddef.h>
 #include <stdlib.h>
@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
 }
 "#;
 
-/// A folder in which everybody may work, with the grader in it and a right program; `None` unless we are root.
+/// Returns a folder that all users may use, with the grader and a right program in it, or `None` unless we are root.
 fn open_to_all() -> Option<Workspace> {
     let workspace = Workspace::new();
     if workspace.run(["doctor"]).code != Some(0) {
@@ -64,7 +64,7 @@ fn set_mode(workspace: &Workspace, name: &str, mode: u32) {
     fs::set_permissions(workspace.path(name), Permissions::from_mode(mode)).expect("a file of ours");
 }
 
-/// Runs the copied grader behind some other commands.
+/// Runs the copied grader through some other commands.
 fn run(workspace: &Workspace, before: &[&str], arguments: &[&str]) -> Run {
     let oracle = workspace.path("oracle");
     let words: Vec<&str> =

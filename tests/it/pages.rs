@@ -1,4 +1,4 @@
-//! HTML pages as a teacher and a student get them.
+//! HTML pages as teachers and students receive them.
 use crate::{grading, workspace::Workspace};
 use std::path::Path;
 
@@ -6,7 +6,7 @@ fn text(workspace: &Workspace, file: &str) -> String {
     String::from_utf8(workspace.read(file)).expect("text")
 }
 
-/// The part of a page besides the style sheet and the script, which are the same on all.
+/// Returns the part of a page without the style sheet and the script, which are the same on all pages.
 fn body(page: &str) -> &str {
     let body = page.split_once("</style>").expect("a style sheet").1;
     body.rsplit_once("<script>").map_or(body, |(body, _)| body)
@@ -39,13 +39,13 @@ fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
     assert!(body(&wrong).contains("id=\"reference-") && body(&wrong).contains("Coefficients"), "no polynomials");
     let right = text(&workspace, "class/reports/fosssim-sample.html");
     assert!(!body(&right).contains("class=\"stage\"") && body(&right).contains("scenes accepted</summary>"));
-    // All results are stored, so no program is run again, and the pages are the same, byte for byte.
+    // All results are stored, so no program is run again, and the pages are identical.
     let again = workspace.run(&words);
     let taken = again.err().lines().find(|line| line.starts_with("reused ")).expect("a line").to_owned();
     let numbers: Vec<&str> = taken.split(' ').filter(|word| word.parse::<u32>().is_ok()).collect();
     assert_eq!(numbers.first(), numbers.get(1), "{taken}");
     assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
-    // Without its card a wrong scene is run again.
+    // Without its card, a wrong scene is run again.
     std::fs::remove_dir_all(workspace.path("class/cards")).expect("cards");
     workspace.run(&words);
     assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
@@ -111,7 +111,7 @@ fn explain_has_a_page_too() {
     assert!(!body(&what).contains("Coefficients") && !body(&what).contains("data-plot"));
 }
 
-/// Against recordings a page has both motions, too, and tells own errors from those that follow.
+/// A page of a grading against recordings also has both motions, and distinguishes own errors from consequences.
 #[test]
 fn a_grading_against_recordings_has_its_motions() {
     let Some(workspace) = grading::workspace() else { return };
@@ -135,12 +135,12 @@ fn a_grading_against_recordings_has_its_motions() {
     let body = body(&page);
     assert!(body.contains("id=\"reference-") && body.contains("id=\"submission-"), "no motion");
     assert!(body.contains("The verdict compares with the recording"), "{body}");
-    // One step is wrong by itself, although the recorded run is another one from there on.
+    // Only one step is wrong by itself, although the recorded run differs from there on.
     assert!(body.contains(" 1 wrong by themselves, 9 right but starting from a wrong state"), "{body}");
     assert!(body.contains("Likely mistake"), "{body}");
 }
 
-/// A group that the suite hides from students is on no page that is handed out.
+/// No page for students contains a group that the suite hides from them.
 #[test]
 fn pages_to_hand_out_hold_no_hidden_group() {
     let Some(workspace) = grading::workspace() else { return };
@@ -196,12 +196,12 @@ fn pages_to_hand_out_hold_no_hidden_group() {
         assert_eq!(text(&workspace, "progress"), runs, "a count tells of no hidden scene");
     }
     assert!(!text(&workspace, "student.html").contains("Veiled"));
-    // Once they are published students see the points of all groups, and what the hints let them know.
+    // When the pages are published, students see the points of all groups, and what the hints allow.
     let published = text(&workspace, "published.html");
     assert!(published.contains("Veiled") && published.contains(" of 3 points"), "{published}");
 }
 
-/// A smallest scene is made from a scene that students see or is not shown to them, and hints hold for it.
+/// A smallest scene is made only from a scene that students may see, and its hints apply.
 #[test]
 fn smallest_scenes_tell_students_what_their_group_does() {
     let Some(workspace) = grading::workspace() else { return };
@@ -227,7 +227,7 @@ fn smallest_scenes_tell_students_what_their_group_does() {
     let lines = text(&workspace, "class/grades.jsonl");
     assert_eq!(lines.lines().filter(|line| line.contains("\"smallest\":[{\"origin\":")).count(), 2);
     assert!(lines.contains("\"worth\":[1.0]"), "{lines:.2000}");
-    // Where what programs choose is withheld, there is none for students.
+    // Where the suite hides program output, students get none.
     workspace.write("veils.toml", text(&workspace, "veils.toml").replace("show_output = true", ""));
     let run = workspace.run([&words[..], &["--fresh"]].concat());
     assert_eq!(run.code, Some(1), "{}", run.shown());
@@ -237,8 +237,8 @@ fn smallest_scenes_tell_students_what_their_group_does() {
     );
 }
 
-/// Staff sees the numbers of every scene; students see what the suite says, group by group, and the assignment's own
-/// `--hints` change nothing for staff.
+/// Staff sees the numbers of every scene. Students see what the suite allows, group by group. The assignment's own
+/// `--hints` changes nothing for staff.
 #[test]
 fn staff_sees_everything_beside_pages_for_students() {
     let Some(workspace) = grading::workspace() else { return };
@@ -268,7 +268,7 @@ fn staff_sees_everything_beside_pages_for_students() {
     assert_eq!(run.code, Some(1), "{}", run.shown());
     let (student, staff) = (text(&workspace, "student.html"), text(&workspace, "staff.html"));
     assert_eq!((numbers(&student), numbers(&staff)), (both(false, false), both(true, true)));
-    // Graded for staff first; then the pages to hand out are asked for, too.
+    // The class is graded for staff first, and then again with pages for students.
     for reader in ["staff", "student"] {
         let run = workspace.run(["grade", &submission, "--suite", "groups.toml", "--output", "out", "--for", reader]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
@@ -278,7 +278,7 @@ fn staff_sees_everything_beside_pages_for_students() {
     assert_eq!(numbers(&text(&workspace, &format!("out/students/{name}.html"))), both(true, false));
 }
 
-/// A page for browsers that a course makes has the course's suite inside; of what the suite hides nothing.
+/// A course's page for browsers contains the course's suite, but nothing that the suite hides.
 #[test]
 fn a_course_s_page_for_browsers_holds_nothing_that_its_suite_hides_from_its_readers() {
     let workspace = Workspace::new();

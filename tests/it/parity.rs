@@ -9,7 +9,7 @@ use fosssim_oracle::{
     sim::RootSearch,
 };
 
-/// Writes down what a judge reports, step by step.
+/// Records the reports of a judge, step by step.
 #[derive(Debug, Default, PartialEq)]
 struct Heard(Vec<(u32, Vec<Remark>)>);
 
@@ -34,7 +34,7 @@ fn judge(
     let mut heard = Heard::default();
     let options = Options { threads, root_search, stop_at_first: false, ..Options::default() };
     let outcome = replay::judge(scene, trace, &options, &mut heard);
-    // NaN is not equal to itself, so what was heard is compared as text.
+    // NaN is not equal to itself, so the remarks are compared as text.
     (outcome, format!("{heard:?}"))
 }
 

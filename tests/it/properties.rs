@@ -1,4 +1,4 @@
-//! Properties of judging that hold for every scene and every damage.
+//! Properties of judging that hold for every scene and all damaged traces.
 use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
     judge::{
@@ -51,7 +51,7 @@ fn a_run_can_be_cut_short_at_its_first_wrong_step() {
     );
 }
 
-/// Returns the contents of a report as text, so that NaN can be compared.
+/// Returns the contents of an outcome as text, so that NaN can be compared.
 fn told(outcome: &Outcome) -> String {
     let mut text = format!("{outcome:?}");
     let searches = text.rfind("searches").expect("the last field");
@@ -67,7 +67,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Damaged bytes lead to no panic and no endless loop, and every number of threads says the same.
+    /// Damaged bytes cause no panic and no endless loop, and the result is the same for every number of threads.
     #[test]
     fn damaged_traces_are_judged_alike_on_all_threads(
         which in 0_usize..1000,

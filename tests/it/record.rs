@@ -21,7 +21,7 @@ fn recordings_are_written_and_found_the_same() {
     insta::assert_snapshot!("recording", format!("{manifest}\n{steps}"));
     let check = workspace.run(["record", "--check"]);
     assert_eq!((check.code, check.out().as_str()), (Some(0), "2 recordings, 5 steps: all the same\n"));
-    // Recording again changes nothing.
+    // A second recording changes nothing.
     assert_eq!(workspace.run(["record"]).code, Some(0));
     assert_eq!(workspace.read("references/Balls/bounce.bin.zst"), packed);
 }
@@ -38,13 +38,13 @@ fn a_byte_that_differs_fails_the_check_with_a_diff() {
     assert_eq!(run.code, Some(1));
     insta::assert_snapshot!("recording_differs", run.shown());
     assert_eq!(workspace.read("references/manifest.txt"), before, "a check writes nothing");
-    // Recording again makes it right, and removes what has no scene any more.
+    // A second recording repairs the file, and removes recordings without a scene.
     assert_eq!(workspace.run(["record"]).code, Some(0));
     assert_eq!(workspace.run(["record", "--check"]).code, Some(0));
     assert!(!workspace.exists("references/Beams/beam.bin.zst") && !workspace.exists("references/Beams/beam.steps"));
 }
 
-/// Scenes may lie in a folder per assignment; their names are the same, and their recordings lie likewise.
+/// Scenes may be in one folder per assignment. Their names do not change, and their recordings are in the same folders.
 #[test]
 fn a_folder_per_assignment_changes_no_name() {
     let workspace = assets();
@@ -62,7 +62,7 @@ fn a_folder_per_assignment_changes_no_name() {
     );
     assert_eq!(workspace.read("references/manifest.txt"), manifest);
     assert_eq!(workspace.run(["record", "--check"]).out(), "2 recordings, 5 steps: all the same\n");
-    // One name stands for one scene.
+    // A name may belong to only one scene.
     workspace.write("assets/Balls/bounce.xml", BOUNCE);
     let twice = workspace.run(["record", "--check"]);
     assert_eq!(twice.code, Some(2));
@@ -86,7 +86,7 @@ fn scenes_that_cannot_be_recorded_are_named() {
 
 #[test]
 fn the_embedded_recordings_are_what_is_simulated_now() {
-    // This folder contains no file of the checkout, so the embedded scenes are checked.
+    // This folder contains no file of the checkout, so `record --check` checks the embedded scenes.
     let run = Workspace::new().run(["record", "--check"]);
     assert_eq!(run.code, Some(0), "{}", run.shown().chars().take(4000).collect::<String>());
 }

@@ -33,8 +33,8 @@ fn wrong_responses_that_lock_step_lets_pass_are_found_at_their_step() {
     assert!(matches!(first.detail, FindingDetail::Position { .. } | FindingDetail::Velocity { .. }), "{first}");
     let layout = Layout::for_scene(&scene);
     let same = right.iter().zip(&wrong).take_while(|(one, other)| one == other).count();
-    // All frames before the first difference are as large as the initial one plus equal logs; the step must not come
-    // before the first differing byte's share of the trace, nor after it by more than one step.
+    // Up to the first difference, all frames have the same size and logs as the reference's. The reported step must not
+    // be before the first differing byte's share of the trace, and at most one step after it.
     let share = same as f64 / right.len() as f64 * f64::from(layout.steps);
     assert!((f64::from(first.step) - share).abs() <= 2.0, "step {} at byte {same} of {}", first.step, right.len());
 }
@@ -71,7 +71,7 @@ fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
     let outcome = recording::judge(&scene, half, &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.overall, Overall::None);
     assert!(matches!(outcome.stop, Some(Stop::Trace { .. })));
-    // The findings before the end are listed in the order of the kinds, as in any other outcome.
+    // The findings before the end are in the order of their kinds, as in any other outcome.
     let mut faster = scene.clone();
     faster.particles.iter_mut().for_each(|particle| particle.velocity *= 1.25);
     let wrong = simulate(&faster);

@@ -37,7 +37,7 @@ fn scene(folder: &Path, entry: &Entry) -> Scene {
     original::read(&bytes).unwrap_or_else(|refusal| panic!("{}: {refusal}", entry.scene)).scene
 }
 
-/// The trace of a scene, and how many root searches it took.
+/// Returns the trace of a scene, and how many root searches it needed.
 fn record(scene: &Scene, search: RootSearch) -> (Vec<u8>, SearchCounts) {
     let mut simulation = Simulation::new(scene, search);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
@@ -48,7 +48,7 @@ fn record(scene: &Scene, search: RootSearch) -> (Vec<u8>, SearchCounts) {
     (trace, simulation.search_counts())
 }
 
-/// The fault of a trace, if it has one: with the first difference where the original's is at hand.
+/// Returns the error of a trace, if any: with the first difference if the original's trace is available.
 fn difference(folder: &Path, entry: &Entry, trace: &[u8]) -> Option<String> {
     let digest: String = Sha256::digest(trace).iter().map(|byte| format!("{byte:02x}")).collect();
     if digest == entry.sha256 {
@@ -89,7 +89,7 @@ fn scenes_of_earlier_milestones_are_recorded_byte_for_byte() {
     all_are_byte_identical(name, "manifest-earlier-milestones.json");
 }
 
-/// The contest of Theme 2, Milestone 3 sums its forces in another order than all others.
+/// The contest of Theme 2, Milestone 3 sums its forces in a different order from all others.
 #[test]
 fn scenes_of_the_contest_are_recorded_byte_for_byte() {
     let Some(folder) = corpus::folder() else { return };
@@ -109,7 +109,7 @@ fn scenes_of_the_contest_are_recorded_byte_for_byte() {
     corpus::ran("scenes_of_the_contest_are_recorded_byte_for_byte", cases);
 }
 
-/// No certificate excludes an impact that the root finder finds, and the use of certificates changes no byte.
+/// No certificate excludes an impact that the root finder finds, and certificates change no byte.
 #[test]
 fn certificates_agree_with_the_root_finder_on_every_course_scene() {
     let Some(folder) = corpus::folder() else { return };

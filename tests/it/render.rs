@@ -1,4 +1,4 @@
-//! `render`: pictures and films of motions.
+//! `render`: images and animations of motions.
 use super::workspace::{BEAM, BOUNCE, Run, Workspace, finish};
 use std::{fs, os::unix::fs::PermissionsExt, os::unix::fs::symlink};
 
@@ -21,7 +21,7 @@ fn films_are_made_in_one_command_and_are_equal_on_two_runs() {
     assert!(gif.starts_with(b"GIF89a\x80\x02\xe0\x01") && gif.ends_with(b";"));
     made(&workspace, "scene.xml --output film.gif");
     assert!(workspace.read("film.gif") == gif, "it differs on the second run");
-    // The reference's own trace is the same motion.
+    // The reference's own trace gives the same motion.
     made(&workspace, "scene.xml trace.bin --output film.gif");
     assert!(workspace.read("film.gif") == gif, "it differs for the trace");
     assert_eq!(workspace.list(), ["film.gif", "scene.xml", "trace.bin"]);
@@ -42,7 +42,7 @@ fn a_folder_gets_a_picture_per_step_under_the_originals_names() {
     assert_eq!(names("pngs"), ["frame00001.png", "frame00002.png", "frame00003.png"]);
     assert_eq!(names("svgs"), ["frame00000000000000000001.svg"]);
     insta::assert_snapshot!("svg", String::from_utf8(workspace.read("svgs/frame00000000000000000001.svg")).unwrap());
-    // The picture after a step is that of the film and of the single picture.
+    // The image after a step is the same in the animation and on its own.
     made(&workspace, "scene.xml --step 2 --output one.png --size 64x48");
     assert!(workspace.read("one.png") == workspace.read("pngs/frame00002.png"));
     let run = render(&workspace, "scene.xml --format png --output pngs --size 64x48 --every 2");
@@ -53,7 +53,8 @@ fn a_folder_gets_a_picture_per_step_under_the_originals_names() {
 fn a_second_trace_is_drawn_on_top() {
     let workspace = Workspace::with_trace(BOUNCE);
     let mut other = workspace.read("trace.bin");
-    // The last record's position is moved by one unit; the end record of step 2 is the last 32 bytes before its lists.
+    // This moves the last record's position by one unit. The end record of step 2 is the last 32 bytes before its
+    // lists.
     let place = other.len() - (32 + 4 + 4 + 28 + 20);
     assert_eq!(f64::from_le_bytes(other[place..place + 8].try_into().unwrap()), 0.0);
     other[place..place + 8].copy_from_slice(&1.0_f64.to_le_bytes());
@@ -112,7 +113,7 @@ fn nonsense_is_refused_before_anything_is_written() {
     assert_eq!(workspace.list(), ["long.xml", "scene.xml", "trace.bin"]);
 }
 
-/// A folder that somebody else has prepared can't make us write elsewhere.
+/// A prepared folder cannot make the program write to other places.
 #[test]
 fn links_in_a_folder_of_pictures_are_replaced_and_not_followed() {
     let workspace = Workspace::with_trace(BEAM);
@@ -124,7 +125,7 @@ fn links_in_a_folder_of_pictures_are_replaced_and_not_followed() {
     assert!(!workspace.path("pngs/frame00001.png").symlink_metadata().unwrap().is_symlink());
 }
 
-/// An ffmpeg that writes what it is given, and its arguments.
+/// Creates an ffmpeg that stores its input and its arguments.
 fn with_ffmpeg(workspace: &Workspace, film: &str) {
     let script = format!(
         "#!/bin/sh\nfor last; do :; done\nif [ \"$last\" = -encoders ]; then echo ' V....D libx264  H.264'; exit; fi\n\

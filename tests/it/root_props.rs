@@ -15,7 +15,8 @@ fn times_quadratic(coefficients: &mut Vec<f64>, u: f64, v: f64) {
     }
 }
 
-/// Zeros in different cells of a grid, so that none is ill-conditioned: real ones on even places, pairs on odd ones.
+/// Returns zeros in different cells of a grid, so that none is ill-conditioned: real ones in even cells, pairs in odd
+/// ones.
 fn separated_zeros() -> impl Strategy<Value = Vec<(f64, f64)>> {
     let cells = prop::sample::subsequence((-4..=4).collect::<Vec<i32>>(), 1..=6);
     (cells, prop::collection::vec((-0.3..0.3_f64, 0.5..2.0_f64, any::<bool>()), 6)).prop_map(|(cells, details)| {
@@ -32,7 +33,7 @@ fn separated_zeros() -> impl Strategy<Value = Vec<(f64, f64)>> {
     })
 }
 
-/// Coefficients of moderate size, with zeros and integers among them.
+/// Returns coefficients of moderate size, including zeros and integers.
 fn coefficients() -> impl Strategy<Value = Vec<f64>> {
     let number = prop_oneof![
         1 => Just(0.0),
@@ -83,7 +84,7 @@ proptest! {
 
     #[test]
     fn complex_zeros_come_in_pairs_and_give_the_sum_of_zeros(mut list in coefficients()) {
-        // At least a line.
+        // The list is at least a line.
         list.splice(0..0, [1.0, -2.0].into_iter().take(2_usize.saturating_sub(list.len())));
         let found = zeros(&list).expect("moderate coefficients end");
         let sum: f64 = found.as_slice().iter().map(|zero| zero.1).sum();

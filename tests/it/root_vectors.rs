@@ -7,10 +7,10 @@ use fosssim_oracle::num::{
 
 use crate::corpus;
 
-/// How the records mark a first-time search that does not terminate.
+/// The value that marks a first-time search without an end in the records.
 const ENDLESS: u64 = 0x7FF8_DEAD_0000_0000;
 
-/// Reads the records' fields one after the other.
+/// A reader of the records' fields, in order.
 struct Fields<'a>(&'a [u8]);
 
 impl Fields<'_> {
@@ -31,7 +31,7 @@ impl Fields<'_> {
     }
 }
 
-/// Equal bits, and any NaN equals any NaN.
+/// Returns whether the bits are equal; all NaNs count as equal.
 fn same(actual: f64, expected: f64) -> bool {
     actual.to_bits() == expected.to_bits() || (actual.is_nan() && expected.is_nan())
 }
@@ -60,7 +60,7 @@ fn zeros_match_the_original_bit_for_bit() {
     corpus::ran("root_vectors::zeros", cases);
 }
 
-/// Compares one file of groups; returns how many cases it held.
+/// Compares one file of groups, and returns the number of its cases.
 fn compare_first_times(file: &str, cut: fn(&[f64]) -> &[f64]) {
     let Some(folder) = corpus::folder() else { return };
     let bytes = corpus::unpack(&folder.join("roots").join(file));
@@ -69,7 +69,7 @@ fn compare_first_times(file: &str, cut: fn(&[f64]) -> &[f64]) {
     while !fields.0.is_empty() {
         let lists: Vec<Vec<f64>> = (0..fields.byte()).map(|_| fields.numbers()).collect();
         let expected = fields.number();
-        // Some lists are of degree six, beyond what a detection polynomial holds.
+        // Some lists have degree six, which no detection polynomial has.
         let actual = if lists.iter().all(|list| cut(list).len() <= MAX_COEFFICIENTS) {
             let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::untrimmed(cut(list))).collect();
             first_time(&polynomials)

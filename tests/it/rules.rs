@@ -1,4 +1,4 @@
-//! The two rule books side by side, as users meet them: what each says about correct variants and about garbage.
+//! The two rule books side by side, as users see them: their verdicts on correct variants and on garbage.
 use super::{
     schemas,
     workspace::{Run, Workspace},
@@ -7,7 +7,7 @@ use fosssim_oracle::suite::library;
 use serde_json::Value;
 use std::path::Path;
 
-/// A workspace with an embedded scene and the trace that the sample program writes for it.
+/// Returns a workspace with an embedded scene and the sample program's trace of it.
 fn sampled(scene: &str, mistake: &str) -> Workspace {
     let workspace = Workspace::new();
     workspace.write("scene.xml", library::scene(scene).expect("an embedded scene"));
@@ -22,7 +22,7 @@ fn sample(scene: &Path, trace: &Path, mistake: &str) {
     assert!(output.expect("the sample starts").status.success());
 }
 
-/// The report as JSON, checked against its schema, and the run.
+/// Returns the run and its report as JSON, checked against its schema.
 fn report(workspace: &Workspace, rules: &str) -> (Run, Value) {
     let run = workspace.run(["check", "scene.xml", "trace.bin", "--format", "json", "--rules", rules]);
     let value = schemas::valid("check", &run.stdout);
@@ -41,7 +41,7 @@ fn correct_programs_that_the_original_fails_are_accepted_and_the_rule_is_named()
         assert_eq!((run.code, &json["verdict"]), (Some(1), &"wrong answer".into()), "{scene} {mistake}");
         assert_eq!(json["fair"]["verdict"], "accepted", "{scene} {mistake}");
         assert_eq!(json["difference"]["key"], cause, "{scene} {mistake}");
-        // The official book decides everything at the top.
+        // The official rule book decides the verdict at the top.
         let (run, json) = report(&workspace, "fair");
         assert_eq!((run.code, &json["verdict"]), (Some(0), &"accepted".into()), "{scene} {mistake}");
         assert_eq!((&json["official"], &json["wrong_steps"]), (&"fair".into(), &0.into()), "{scene} {mistake}");
@@ -59,7 +59,7 @@ fn a_wrong_trace_comes_with_its_likely_mistake_unless_nobody_asks() {
     assert!(text.out().contains("Likely cause\n  likely mistake: "), "{}", text.shown());
     let silent = workspace.run(["check", "scene.xml", "trace.bin", "--no-explain"]);
     assert!(!silent.out().contains("likely mistake"), "{}", silent.shown());
-    // Correct programs that the original fails make no mistake.
+    // Correct programs that the original rejects have no mistake.
     let (_, json) = report(&sampled("GeometricTests/tiny-edge-just-missed", "scale-2"), "both");
     assert_eq!(json["explanations"], serde_json::json!([]));
 }
@@ -85,7 +85,7 @@ fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
 #[test]
 fn a_suite_whose_scenes_hang_on_round_off_is_told_so() {
     let workspace = Workspace::new();
-    // At the end of the first step the ball touches the half-plane, except for a rounding.
+    // At the end of the first step the ball touches the half-plane, except for a rounding error.
     let ball = |vx, vy| {
         format!(
             "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.5\"/>\

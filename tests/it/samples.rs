@@ -1,4 +1,4 @@
-//! The sample submissions, as processes: the correct one equals the reference, every wrong one differs from it.
+//! The sample submissions as processes: the correct one equals the reference, and every wrong one differs from it.
 #![expect(clippy::disallowed_types, reason = "these tests are about a program, so they start it")]
 
 use std::{
@@ -48,14 +48,14 @@ struct Entry {
     sha256: String,
 }
 
-/// The program, without a mistake from the environment.
+/// Returns the sample program, without a mistake from the environment.
 fn sample() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-sample"));
     command.env_remove("FOSSSIM_SAMPLE_MISTAKE");
     command
 }
 
-/// Runs a scene. The trace comes through a pipe, so nothing but strictly sequential writing would do.
+/// Runs a scene. The trace goes through a pipe, which accepts only sequential writes.
 fn run(scene: &Path, mistake: Option<&str>) -> Output {
     let mut command = sample();
     command.arg("-s").arg(scene).args(["-d", "0", "-o", "/dev/stderr"]);
@@ -77,8 +77,8 @@ fn catalogue() -> Vec<Row> {
     listing.mistakes
 }
 
-/// Whether a mistake is one of forces, integrators and what follows from them, which `crates/mistakes` tests on its own
-/// probe scenes.
+/// Returns whether a mistake belongs to forces, integrators or their consequences, which `crates/mistakes` tests with
+/// its own probe scenes.
 fn is_state_mistake(row: &Row) -> bool {
     let areas = ["forces", "jacobians", "integrator", "penalty", "near-pairs", "simple-detection"];
     areas.contains(&row.area.as_str()) || row.id.starts_with("respond-")
@@ -97,7 +97,7 @@ fn asset(name: &str) -> PathBuf {
     assets().into_iter().find(|path| path.ends_with(name)).unwrap_or_else(|| panic!("no scene {name}"))
 }
 
-/// The trace that the library's simulator records.
+/// Returns the trace that the library's simulator records.
 fn reference(path: &Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("a readable scene");
     let scene = original::read(&bytes).unwrap_or_else(|refusal| panic!("{}: {refusal}", path.display())).scene;
@@ -166,7 +166,7 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
     assert!(different.is_empty(), "{different:?}");
 }
 
-/// The number of mistakes is written where people read it, and must change with the catalogue.
+/// Documents contain the number of mistakes, which must change with the catalogue.
 #[test]
 fn documents_say_how_many_mistakes_and_variants_there_are() {
     let rows = catalogue();
@@ -259,12 +259,12 @@ fn hostile_programs_end_as_the_catalogue_says() {
     assert_ne!(forged.stderr, correct, "its physics is wrong");
 }
 
-/// NaN positions would send the course's root finder round forever; the sample says so and stops.
+/// NaN positions would make the course's root finder run forever. The sample prints a message and stops.
 #[test]
 fn a_run_that_would_never_end_stops_with_status_3() {
     let folder = tempfile::tempdir().expect("a folder");
     let scene = folder.path().join("massless.xml");
-    // Without a mass its acceleration is 0 / 0.
+    // Without a mass, its acceleration is 0 / 0.
     let text = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
         <collision type=\"continuous-time\"/><simplegravity fx=\"0\" fy=\"-1\"/>\
         <particle m=\"0\" px=\"0\" py=\"5\" vx=\"1\" vy=\"0\" fixed=\"0\" radius=\"0.5\"/>\

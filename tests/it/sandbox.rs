@@ -18,7 +18,7 @@ use fosssim_oracle::sandbox::{
     Backend, Job, Layer, Limits, Policy, RunEnd, RunOutcome, StartProblem, Supervisor, collect,
 };
 
-/// The sandbox under the real binary; tests without the required walls are skipped with a line.
+/// Returns the sandbox of the real binary. Tests without the required layers of protection are skipped with a message.
 pub fn backend() -> Option<&'static Backend> {
     static BACKEND: OnceLock<Result<Backend, String>> = OnceLock::new();
     let make = || Backend::with_all_layers(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle")));
@@ -26,7 +26,7 @@ pub fn backend() -> Option<&'static Backend> {
     backend.as_ref().map_err(|error| skip(Need::Sandbox, error)).ok()
 }
 
-/// Limits that a small program keeps and that a hostile one meets soon.
+/// Returns limits that a small program keeps and that a hostile one soon reaches.
 pub fn small() -> Limits {
     Limits {
         cpu: Duration::from_millis(500),
@@ -141,7 +141,7 @@ fn a_trace_without_end_is_stopped_at_its_limit() {
     assert!(length > small().trace_bytes && length <= small().folder_bytes, "{length}");
 }
 
-/// A trace's limit does not depend on the folder's.
+/// The limit of a trace does not depend on the folder's limit.
 #[test]
 fn a_trace_may_be_longer_than_all_else_in_the_folder() {
     let Some(bench) = Bench::new() else { return };
@@ -177,7 +177,7 @@ fn a_run_can_be_cancelled_and_dropped() {
     let running = bench.backend.start(&job).unwrap();
     running.canceller().cancel();
     assert_eq!(running.wait().unwrap().ended, RunEnd::Cancelled);
-    // The drop ends the sleeper: it would otherwise wait for a thousand seconds.
+    // Dropping the run kills the sleeper, which would otherwise wait for a thousand seconds.
     drop(bench.backend.start(&job).unwrap());
 }
 
@@ -216,7 +216,7 @@ fn readable_paths_are_readable_and_others_are_not() {
     let refused = bench.run("/bin/cat", &[scene]);
     assert_eq!(refused.ended, RunEnd::Exited(1));
     let why = text(&refused.stderr.bytes);
-    // In a world of its own the file is not even there.
+    // In its own namespace the file does not even exist.
     assert!(why.contains("ermission denied") || why.contains("o such file"), "{why}");
     let outcome = bench.finish(&bench.job("/bin/cat", &[scene]).readable([outside.path()]));
     assert_eq!(text(&outcome.stdout.bytes), "<scene/>");
@@ -234,7 +234,8 @@ fn a_run_in_namespaces_sees_a_world_of_its_own() {
     }
     let outcome = bench.run(bench.script("#!/bin/sh\necho $$\n"), &[]);
     assert_eq!(text(&outcome.stdout.bytes), "2\n", "{outcome:?}");
-    // Without Landlock, which refuses to list the root folder, only the view itself keeps the host out of sight.
+    // Without Landlock, which forbids listing the root folder, only the separate view of the file system hides the
+    // host.
     let Ok(backend) = bench.backend.without_layer(Layer::FileRules) else { return };
     let seen = |folder: &str| {
         let outcome = backend.start(&bench.job("/bin/ls", &["-A", folder])).unwrap().wait().unwrap();
@@ -314,7 +315,7 @@ fn the_folder_is_the_graders_again_when_the_run_is_over() {
     assert_eq!(bench.folder.path().metadata().unwrap().uid(), owner);
 }
 
-/// Builds a C program in the folder; `None` (said in a line) without a compiler that can.
+/// Builds a C program in the folder. Returns `None` and prints a line without a suitable compiler.
 fn compiled(folder: &Path, source: &str, options: &[&str]) -> Option<PathBuf> {
     let (from, to) = (folder.join("source.c"), folder.join("built"));
     std::fs::write(&from, source).unwrap();
@@ -351,7 +352,7 @@ fn a_missing_library_is_named() {
 fn a_loader_that_is_not_the_systems_is_the_programs_fault() {
     let Some(bench) = Bench::new() else { return };
     let folder = tempfile::tempdir().unwrap();
-    // While the program is started, its process is the grader itself.
+    // While the program starts, its process is the grader itself.
     for loader in ["/no/such/loader", "/proc/self/exe", "/proc/self/task/2/exe", env!("CARGO_BIN_EXE_fosssim-oracle")] {
         let option = format!("-Wl,--dynamic-linker={loader}");
         let Some(program) = compiled(folder.path(), "int main(void) { return 0; }", &[&option]) else { return };
@@ -423,7 +424,7 @@ fn without_the_required_walls_the_limits_and_all_other_walls_still_hold() {
     let outcome = backend.start(&job).unwrap().wait().unwrap();
     assert_eq!(outcome.ended, RunEnd::WallLimit);
     assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && report.active));
-    // Eight sleepers where four processes are allowed.
+    // This starts eight sleepers, but only four processes are allowed.
     let script = "for i in 1 2 3 4 5 6 7 8; do sleep 1000 & done; wait";
     let limits = Limits { processes: 4, ..small() };
     let job = Job::new("/bin/sh", bench_folder.path()).arguments(["-c", script]).limits(limits).policy(Policy::Tools);
@@ -454,7 +455,7 @@ fn a_program_cannot_have_the_grader_run_in_its_place() {
     let link = bench.folder.path().join("link");
     std::os::unix::fs::symlink(grader, &link).unwrap();
     assert_eq!(bench.run(link, &["--version"]).ended, RunEnd::CouldNotStart(StartProblem::GradersOwn));
-    // The program does not see the grader even in a folder that it may read.
+    // The program does not see the grader, even in a folder that it may read.
     let beside = Path::new(grader).parent().unwrap();
     let outcome = bench.finish(&bench.job("/bin/cat", &[grader]).readable([beside]).policy(Policy::Tools));
     assert!(outcome.ended != RunEnd::Exited(0) && outcome.stdout.bytes.is_empty(), "it read the grader");
@@ -473,7 +474,7 @@ fn a_script_is_read_by_its_interpreter_and_executes_nothing_else() {
     let loader =
         ["/lib64/ld-linux-x86-64.so.2", "/lib/ld-linux-aarch64.so.1"].into_iter().find(|path| Path::new(path).exists());
     let Some(loader) = loader else { return };
-    // By the loader a script could run any file that it can read.
+    // With the loader, a script could run any file that it can read.
     let script = bench.script(&format!("#!/bin/sh\nexec {loader} /bin/echo run\n"));
     for backend in [bench.backend.clone(), bench.backend.without_layer(Layer::NamedCalls).unwrap()] {
         let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
@@ -516,7 +517,7 @@ fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
     assert!(bench.backend.start(&job).unwrap_err().to_string().contains("changed or removed"));
 }
 
-/// Runs the program's own commands where the temporary folder is mounted so that nothing may be executed in it.
+/// Runs the program's own commands with a temporary folder in which nothing may be executed.
 #[test]
 fn a_temporary_folder_without_execution_is_told_and_graded_from_memory() {
     let Some(_) = backend() else { return };

@@ -21,7 +21,7 @@ fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The corpus's scenes with their names below the corpus folder, when there is a corpus.
+/// Returns the corpus's scenes with their names below the corpus folder, if there is a corpus.
 fn scenes() -> Option<Vec<(String, Vec<u8>)>> {
     let folder = corpus::folder()?;
     let mut files = Vec::new();

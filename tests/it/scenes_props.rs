@@ -1,4 +1,4 @@
-//! Rules for every scene and for every sequence of bytes, by random search.
+//! Rules for every scene and every sequence of bytes, by random search.
 use fosssim_oracle::num::vector::Vec2;
 use fosssim_oracle::scene::{
     self, Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Integrator, Particle, ParticlePath,
@@ -8,7 +8,7 @@ use proptest::collection::vec;
 use proptest::option;
 use proptest::prelude::*;
 
-/// Any finite number.
+/// Returns any finite number.
 fn number() -> impl Strategy<Value = f64> {
     use proptest::num::f64::{NEGATIVE, NORMAL, POSITIVE, SUBNORMAL, ZERO};
     POSITIVE | NEGATIVE | NORMAL | SUBNORMAL | ZERO
@@ -18,7 +18,7 @@ fn vector() -> impl Strategy<Value = Vec2> {
     (number(), number()).prop_map(|(x, y)| Vec2::new(x, y))
 }
 
-/// Any text but a NUL in it.
+/// Returns any text without NUL.
 fn text() -> impl Strategy<Value = String> {
     let c =
         prop_oneof![any::<char>(), prop::sample::select(vec!['&', '<', '>', '"', '\'', '\n', '\r', '\t', ' ', ';'])];
@@ -56,7 +56,7 @@ fn collision() -> impl Strategy<Value = Collision> {
     ]
 }
 
-/// Particles in a row, so that no two are in one place.
+/// Returns particles in a row, so that no two are at the same place.
 fn particles() -> impl Strategy<Value = Vec<Particle>> {
     let particle =
         (0.0..1.0_f64, -5.0..5.0_f64, vector(), 1e-300..1e300_f64, any::<bool>(), 0.0..1e300_f64, option::of(text()));
@@ -74,7 +74,7 @@ fn particles() -> impl Strategy<Value = Vec<Particle>> {
     })
 }
 
-/// Two different numbers below `count`.
+/// Returns two different numbers below `count`.
 fn pair(count: usize) -> impl Strategy<Value = (usize, usize)> {
     (0..count, 1..count).prop_map(move |(first, ahead)| (first, (first + ahead) % count))
 }
@@ -84,7 +84,7 @@ fn edges(particles: usize) -> impl Strategy<Value = Vec<Edge>> {
     vec(edge.prop_map(|((first, second), radius)| Edge { first, second, radius }), 1..5)
 }
 
-/// Forces in the order in which they act.
+/// Returns forces in the order in which they act.
 fn forces(particles: usize, edges: usize, vortices: usize) -> impl Strategy<Value = Vec<Force>> {
     let spring = (0..edges, number(), number(), number())
         .prop_map(|(edge, stiffness, rest_length, damping)| Force::Spring { edge, stiffness, rest_length, damping });
@@ -142,7 +142,7 @@ fn display(particles: usize, edges: usize) -> impl Strategy<Value = Display> {
         )
 }
 
-/// Any scene without errors.
+/// Returns any scene without errors.
 fn scene() -> impl Strategy<Value = Scene> {
     let integrator = prop::sample::select(vec![
         Integrator::ExplicitEuler,
@@ -160,7 +160,7 @@ fn scene() -> impl Strategy<Value = Scene> {
             let (particle_count, edge_count) = (particles.len(), edges.len());
             let implicit = matches!(integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
             let normal = (0.1..9.0_f64, -9.0..9.0_f64).prop_map(|(x, y)| Vec2::new(x, y));
-            // Far to the left, so that no particle is on one.
+            // The half-plane is far to the left, so that no particle is on it.
             let plane =
                 (-1e6..-1e3_f64, normal).prop_map(|(x, normal)| HalfPlane { point: Vec2::new(x, -0.0), normal });
             (
@@ -189,7 +189,7 @@ fn scene() -> impl Strategy<Value = Scene> {
         })
 }
 
-/// The places to change in a text, and what to put there.
+/// Returns the positions to change in a text, and the replacements.
 fn edits() -> impl Strategy<Value = Vec<(prop::sample::Index, usize, Vec<u8>)>> {
     let markup = prop::sample::select(b"<>/='\"&;#x! ?-[]\n\r\t0159.eabpi\0\xc3\xff".to_vec());
     vec((any::<prop::sample::Index>(), 0..4_usize, vec(markup, 0..4)), 1..6)
@@ -205,7 +205,8 @@ fn edited(text: &str, edits: Vec<(prop::sample::Index, usize, Vec<u8>)>) -> Vec<
     bytes
 }
 
-/// No reader panics. The strict reader accepts only scenes that the original reads equally, and gives reasons.
+/// Checks that no reader panics, and that the strict reader accepts only scenes that the original reads in the same
+/// way, and gives reasons otherwise.
 fn judge(bytes: &[u8]) -> Result<(), TestCaseError> {
     let original = original::read(bytes);
     match scene::read("scene", bytes) {
@@ -232,7 +233,7 @@ proptest! {
         let strict = strict.map_err(|problems| TestCaseError::fail(format!("{written}\n{problems}")))?;
         let lenient = original::read(written.as_bytes());
         let lenient = lenient.map_err(|refusal| TestCaseError::fail(format!("{written}\n{refusal}")))?;
-        // The debug form tells zeros apart, too.
+        // The debug form also distinguishes the two zeros.
         prop_assert_eq!(format!("{:?}", strict.scene), format!("{before:?}"));
         prop_assert_eq!(format!("{:?}", lenient.scene), format!("{before:?}"));
         let banner = before.description.unwrap_or_else(|| "No description specified.".to_owned());

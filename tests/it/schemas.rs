@@ -1,16 +1,16 @@
-//! The schemas of JSON documents: made from their types, and true of what the program writes.
+//! The schemas of JSON documents: they are generated from the types, and fit the program's output.
 use super::workspace::root;
 use fosssim_oracle::report::schemas;
 use serde_json::Value;
 
-/// The committed schema of a command's documents.
+/// Returns the committed schema of a command's documents.
 fn committed(command: &str) -> Value {
     let path = root().join(format!("schemas/{command}.schema.json"));
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// Reads what a command wrote, and holds it to the command's schema.
+/// Reads a command's output, and checks it against the command's schema.
 #[track_caller]
 pub fn valid(command: &str, document: &[u8]) -> Value {
     let document: Value = serde_json::from_slice(document).expect("JSON");
@@ -34,7 +34,7 @@ fn schemas_are_those_of_the_types() {
     );
 }
 
-/// A schema that allows everything would hold nothing.
+/// A schema that allows everything would check nothing.
 #[test]
 fn documents_with_unknown_or_missing_fields_are_refused() {
     for (command, schema) in schemas::all() {

@@ -1,4 +1,4 @@
-//! `serve` becomes the server that stands beside the program, and says so when there is none.
+//! `serve` starts the server next to the program, or reports that there is none.
 use std::{
     fs,
     os::unix::fs::symlink,
@@ -12,7 +12,7 @@ fn run(folder: &Path, words: &[&str]) -> Output {
 
 #[test]
 fn serve_becomes_the_server_beside_the_program() {
-    // Links, so that no program is written that somebody else's child still holds open.
+    // These are links, so that no program is written while another test's child has it open.
     let program = Path::new(env!("CARGO_BIN_EXE_fosssim-oracle"));
     let folder = tempfile::tempdir_in(program.parent().expect("a folder")).expect("a folder");
     fs::hard_link(program, folder.path().join("fosssim-oracle")).expect("a link");

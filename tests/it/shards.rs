@@ -1,4 +1,4 @@
-//! A grading that is shared out among machines: put together, its results are those of a grading in one go.
+//! A grading that is divided among machines: the merged results are those of a single grading.
 use crate::{
     grading::workspace,
     workspace::{Workspace, submission},
@@ -12,7 +12,7 @@ const MISTAKES: [(&str, &str); 4] = [
     ("dave", "contact-time-zero"),
 ];
 
-/// Six submissions: four with a mistake, a right one, and one that does nothing.
+/// Creates six submissions: four with a mistake, a right one, and one that does nothing.
 fn class(workspace: &Workspace) {
     fs::create_dir_all(workspace.path("class")).expect("a folder");
     for (name, mistake) in MISTAKES {
@@ -24,7 +24,7 @@ fn class(workspace: &Workspace) {
     fs::copy("/bin/true", workspace.path("class/frank")).expect("a copy");
 }
 
-/// A table, a page or JSON lines without measurements.
+/// Returns a table, a page or JSON lines without measurements.
 fn without_measurements(name: &str, bytes: &[u8]) -> String {
     let text = String::from_utf8(bytes.to_vec()).expect("text");
     if name.ends_with(".csv") {
@@ -59,7 +59,7 @@ fn without_measurements(name: &str, bytes: &[u8]) -> String {
     text
 }
 
-/// The files of a folder, without its own bookkeeping.
+/// Returns the files of a folder, without the folder's internal files.
 fn files(workspace: &Workspace, folder: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut left = vec![workspace.path(folder)];
@@ -103,7 +103,7 @@ fn shards_put_together_are_a_grading_in_one_go() {
         let text = |folder: &str| without_measurements(name, &workspace.read(format!("{folder}/{name}")));
         assert!(text("parts") == text("whole"), "{name}:\n{}\n{}", text("parts"), text("whole"));
     }
-    // A grading in one go finds every result in the merged folder.
+    // A single grading finds every result in the merged folder.
     let again = workspace.run(["grade", "class", "--suite", "suite.toml", "--output", "parts", "--quiet"]);
     assert!(again.err().contains("reused 18 of 18 results from parts"), "{}", again.shown());
 }
@@ -121,13 +121,13 @@ fn shards_that_are_missing_doubled_or_foreign_are_told() {
         assert_eq!(run.code, Some(2), "{}", run.shown());
         assert!(run.err().contains(why), "{}", run.shown());
     };
-    // More shards than submissions: some have nothing to do, and are there all the same.
+    // There are more shards than submissions: some shards have nothing to do, but still exist.
     for number in [1, 2, 4, 5, 6, 7, 8] {
         let run = grade(&format!("{number}/8"), "parts", &[]);
         assert!(matches!(run.code, Some(0 | 1)), "{}", run.shown());
     }
     refused(&["merge", "parts"], "1 shard of 8 is missing, or not done: 3; grade it with --shard");
-    // One that was begun again, and did not end, is not done.
+    // A shard that was started again and did not end is not complete.
     fs::remove_file(workspace.path("parts/shard-7-of-8/shard.json")).expect("removed");
     refused(&["merge", "parts"], "2 shards of 8 are missing, or not done: 3, 7; grade them");
     assert_eq!(grade("7/8", "parts", &[]).code, Some(0));

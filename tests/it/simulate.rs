@@ -1,4 +1,4 @@
-//! `simulate`: traces and summaries, and outputs that appear whole or not at all.
+//! `simulate`: traces and summaries. Each output is complete, or does not exist.
 use super::workspace::{BEAM, BOUNCE, Workspace, finish, trace_of};
 use std::{os::unix::fs::symlink, process::Command};
 
@@ -74,7 +74,7 @@ fn outputs_that_cannot_be_written_are_refused() {
 #[test]
 fn a_simulation_that_fails_leaves_the_old_trace_alone() {
     let workspace = Workspace::new();
-    // Two particles in one place: their distance has no direction, and Newton's method gets nowhere.
+    // Two particles are at the same place: their distance has no direction, and Newton's method finds no solution.
     let scene = r#"<scene><duration time="1"/><integrator type="implicit-euler" dt="0.1"/>
         <collision type="penalty" k="1e9" thickness="0.5"/>
         <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="1"/>

@@ -5,7 +5,7 @@ use crate::{
 };
 use serde_json::Value;
 
-/// A suite with 60 points for scenes and 40 for speed. The program computes this number of million useless rounds.
+/// Returns a suite with 60 points for scenes and 40 for speed. The program computes this many million useless rounds.
 fn suite(busy: u32, scenes: &str) -> String {
     let words = ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}", "--busy", &busy.to_string()];
     let run = words.map(|word| format!("\"{word}\"")).join(", ");
@@ -41,7 +41,7 @@ fn a_fast_program_has_all_points_and_a_slow_one_those_for_being_right() {
         assert_eq!(found["runs"], 2);
         let of = |key: &str| found[key].as_f64().expect("a ratio");
         assert!(of("least_ratio") <= of("greatest_ratio") && (of("ratio") < 10.0) == (busy == 0), "{found}");
-        // Every report shows the origin of the points.
+        // Every report shows where the points come from.
         let words = found["text"].as_str().expect("words").to_owned();
         assert!(words.contains("times the reference's processor time; 2 rounds gave"), "{words}");
         for format in ["text", "html", "gradescope", "prairielearn"] {
@@ -55,7 +55,7 @@ fn a_fast_program_has_all_points_and_a_slow_one_those_for_being_right() {
     }
 }
 
-/// Being right comes first, and a grading that is done again measures nothing again.
+/// Correctness comes first, and a repeated grading measures nothing again.
 #[test]
 fn speed_counts_once_all_scenes_are_accepted_and_is_measured_once() {
     let Some(workspace) = grading::workspace() else { return };
@@ -71,12 +71,12 @@ fn speed_counts_once_all_scenes_are_accepted_and_is_measured_once() {
     let (first, second) = (again(), again());
     assert_eq!(first["groups"][0]["speed"], second["groups"][0]["speed"]);
     assert_eq!(second["groups"][0]["scenes"][0]["cached"], true);
-    // Times of another machine are none of this one.
+    // Times from another machine do not count.
     let journal = String::from_utf8(workspace.read("out/journal.jsonl")).expect("text");
     assert!(journal.contains("\"machine\":\""), "{journal}");
     workspace.write("out/journal.jsonl", journal.replace("\"machine\":\"", "\"machine\":\"other "));
     assert_eq!(again()["groups"][0]["scenes"][0]["cached"], false);
-    // Traces have no time.
+    // Traces have no times.
     let traces = workspace.run(["grade", "--traces", ".", "--suite", "contest.toml", "--format", "json"]);
     let traces: Value = serde_json::from_slice(&traces.stdout).expect("JSON");
     assert_eq!(traces["grades"][0]["max_points"], 60.0);

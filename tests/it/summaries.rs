@@ -1,5 +1,5 @@
-//! For every embedded scene a readable summary of what the reference does there, as a snapshot: a change of behavior
-//! shows as a diff that `cargo insta review` accepts or rejects.
+//! For every embedded scene, a readable summary of the reference's events, as a snapshot: a change of behavior is a
+//! diff, which `cargo insta review` accepts or rejects.
 use fosssim_oracle::{
     scene,
     sim::{PairKindMap, RootSearch, Simulation},

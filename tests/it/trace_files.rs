@@ -1,9 +1,9 @@
-//! Programs that make their trace in ways of their own: what counts is the file that they leave.
+//! Programs that create their trace in unusual ways: only the file at the end counts.
 use crate::workspace::{BOUNCE, Workspace, trace_of};
 use fosssim_testing::{Need, skip};
 use std::{fs, os::unix::fs::PermissionsExt};
 
-/// A C program that has the trace of [`BOUNCE`] in `right`, and its name in `path`.
+/// Returns a C program that has the trace of [`BOUNCE`] in `right`, and its file name in `path`.
 fn program(body: &str) -> String {
     let bytes: Vec<String> = trace_of(BOUNCE).iter().map(u8::to_string).collect();
     format!(

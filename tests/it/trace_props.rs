@@ -1,4 +1,4 @@
-//! Traces: what is written is read again, and no bytes whatever make a reader panic or grow.
+//! Traces: readers return what writers wrote, and no bytes make a reader panic or use unlimited memory.
 use crate::corpus;
 use fosssim_oracle::{
     num::vector::Vec2,
@@ -12,7 +12,7 @@ use fosssim_oracle::{
 use proptest::test_runner::RngSeed;
 use proptest::{collection::vec, prelude::*};
 
-/// Any bits at all, NaN and infinities included, and ordinary numbers.
+/// Returns any bits, including NaN and infinities, and ordinary numbers.
 fn number() -> impl Strategy<Value = f64> {
     prop_oneof![any::<u64>().prop_map(f64::from_bits), -10.0..10.0, Just(0.0), Just(-0.0), Just(1e-13), Just(f64::NAN)]
 }
@@ -59,7 +59,7 @@ fn write(layout: Layout, frames: &[Frame]) -> Vec<u8> {
     writer.finish().unwrap().0
 }
 
-/// Reads strictly to the end and writes again what was read.
+/// Reads strictly to the end and writes the same records again.
 fn rewrite(mut reader: Reader<impl std::io::Read>) -> Result<Vec<u8>, TraceError> {
     let mut writer = Writer::new(Vec::new(), reader.layout());
     let mut frame = Frame::default();
@@ -69,7 +69,7 @@ fn rewrite(mut reader: Reader<impl std::io::Read>) -> Result<Vec<u8>, TraceError
     Ok(writer.finish().unwrap().0)
 }
 
-/// Reads with both readers; whatever the bytes are, the memory stays in proportion to them.
+/// Reads with both readers. For all bytes, the memory stays proportional to them.
 fn read_anything(layout: Layout, bytes: &[u8]) -> Result<(), TestCaseError> {
     let known = rewrite(Reader::from_slice(bytes, layout));
     let unknown = rewrite(Reader::new(bytes, layout));
@@ -158,8 +158,8 @@ proptest! {
     }
 }
 
-/// A trace of one particle and one step with an impulse and two polynomials in each later record, and the offset of
-/// each of its records.
+/// Returns a trace of one particle and one step, with an impulse and two polynomials in each later record, and the
+/// offset of each of its records.
 fn small() -> (Layout, Vec<u8>) {
     let layout = Layout { particles: 1, has_impulses: true, has_polynomials: true, steps: 1 };
     let state = State { positions: vec![1.0, 2.0], velocities: vec![3.0, 4.0] };
@@ -174,7 +174,7 @@ fn small() -> (Layout, Vec<u8>) {
 #[test]
 fn every_cut_of_a_small_trace_is_named() {
     let (layout, bytes) = small();
-    // Blocks of a later record: state 32, count 4, impulse 36, count 4, polynomials 28 and 12.
+    // A later record consists of: state 32, count 4, impulse 36, count 4, polynomials 28 and 12.
     assert_eq!(bytes.len(), 40 + 2 * 116);
     for cut in 0..bytes.len() {
         let error = rewrite(Reader::from_slice(&bytes[..cut], layout)).unwrap_err();
@@ -228,7 +228,7 @@ fn negative_counts_are_refused() {
     assert_eq!((error.offset, error.what), (72, Malformation::NegativeCount { list: RecordList::Impulses, count }));
 }
 
-/// The example of trace-format.md 3 with one of the collision types.
+/// Returns the example of trace-format.md 3 with one of the collision types.
 fn example(collision: &str) -> Vec<u8> {
     let xml = format!(
         r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/><collision type="{collision}"
@@ -261,7 +261,7 @@ fn the_annotated_example_is_recorded_byte_for_byte() {
     .concat();
     assert_eq!(example("continuous-time"), [initial, later.clone(), later].concat());
 
-    // At the end of the step the particle is exactly on the plane: no impulse.
+    // At the end of the step the particle is exactly on the plane, so there is no impulse.
     let simple = example("simple");
     assert_eq!(simple.len(), 72);
     assert_eq!(simple[36..], [numbers(&[0.0, 0.0, 0.0, -1.0]), integers(&[0])].concat());
@@ -272,7 +272,7 @@ fn the_annotated_example_is_recorded_byte_for_byte() {
     assert_eq!(hybrid[40..176], hybrid[176..], "no geometric part, so the records of the step are equal");
 }
 
-/// A summary keeps what a snapshot needs, also of a damaged trace.
+/// A summary keeps what a snapshot needs, even of a damaged trace.
 #[test]
 fn a_summary_says_what_happened_and_where_reading_ended() {
     let xml = br#"<scene><duration time="3"/><integrator type="explicit-euler" dt="0.1"/>
@@ -300,8 +300,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     assert!(damaged.to_string().contains("damage         byte "), "{damaged}");
 }
 
-/// The corpus's traces, read as the original reads them: whether and why reading stopped is known from what the
-/// original printed.
+/// Reads the corpus's traces as the original does: its output shows whether and why it stopped.
 #[test]
 fn lenient_reading_stops_where_the_original_stopped() {
     let Some(folder) = corpus::folder() else { return };
@@ -331,7 +330,7 @@ fn lenient_reading_stops_where_the_original_stopped() {
             "exit 1" if said("Failed to load timestep") => assert_eq!(cause, Some(ReadFailure::State), "{file}"),
             "exit 1" if said("deserialize") => assert_eq!(cause, Some(ReadFailure::Impulses), "{file}"),
             "signal 6" => assert!(cause.is_some(), "{file}"),
-            // The original hung in the computation; the trace may be as it likes.
+            // The original did not end its computation, so the trace may have any contents.
             "timeout" => {}
             other => panic!("{file}: {other} {stop:?}"),
         }

@@ -1,4 +1,4 @@
-//! The original's verdicts: every row of the corpus, by the drop-in and by `check`, on one thread and on many.
+//! The original's verdicts: every row of the corpus, by the drop-in and by `check`, on one thread and on several.
 use super::{
     corpus,
     workspace::{Run, Workspace},
@@ -7,13 +7,13 @@ use serde_json::Value;
 use similar::TextDiff;
 use std::path::Path;
 
-/// The rows of `verdicts.jsonl`.
+/// Returns the rows of `verdicts.jsonl`.
 fn rows(folder: &Path) -> Vec<Value> {
     let text = std::fs::read_to_string(folder.join("verdicts.jsonl")).unwrap();
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
-/// A folder with the row's scene and trace, as the original had it.
+/// Returns a folder with the row's scene and trace, as the original had it.
 fn workspace(folder: &Path, row: &Value) -> Workspace {
     let workspace = Workspace::new();
     let scene = scene(row);
@@ -32,7 +32,7 @@ fn name(row: &Value) -> String {
     format!("{} {}", row["submission"], row["scene"])
 }
 
-/// Whether the original came to an end of its own.
+/// Returns whether the original ended by itself.
 fn ended(row: &Value) -> bool {
     row["oracle_end"].as_str().unwrap().starts_with("exit")
 }
@@ -55,10 +55,10 @@ fn the_drop_in_says_what_the_original_said() {
     corpus::ran("the_drop_in_says_what_the_original_said", rows.len());
 }
 
-/// Standard output, standard error, `residual.txt` and exit code are the original's.
+/// Checks that standard output, standard error, `residual.txt` and the exit code are the original's.
 fn compare(row: &Value, workspace: &Workspace, run: &Run) {
     let expected = row["stdout"].as_str().unwrap();
-    // The corpus holds bytes as Latin-1.
+    // The corpus stores bytes as Latin-1.
     let actual: String = run.stdout.iter().map(|&byte| char::from(byte)).collect();
     if actual != expected {
         let diff = TextDiff::from_lines(expected, actual.as_str());
@@ -108,7 +108,7 @@ fn check_gives_the_originals_verdict_on_one_thread_and_on_many() {
             ("max_pos", "maximum_position_residual"),
             ("max_vel", "maximum_velocity_residual"),
         ] {
-            // The corpus does not give those of the empty traces; the whole standard output is compared above.
+            // The corpus has no residuals of the empty traces; the complete standard output is compared above.
             let Some(expected) = row["residuals"][key][0].as_str() else { continue };
             let text = match &parity[field] {
                 Value::String(text) => text.clone(),

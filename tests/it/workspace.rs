@@ -1,4 +1,4 @@
-//! A folder of its own for every test of the command line, and the program run there with a scrubbed environment.
+//! A separate folder for every test of the command line, in which the program runs with a cleaned environment.
 use fosssim_oracle::{
     sample::pinned_mistake,
     scene::{self, Scene},
@@ -26,7 +26,7 @@ pub fn submission(mistake: &str) -> Vec<u8> {
     pinned_mistake::write(&sample, mistake).expect("a place for the mistake")
 }
 
-/// A temporary folder; gone at the end of the test.
+/// A temporary folder, which is removed at the end of the test.
 pub struct Workspace {
     folder: tempfile::TempDir,
 }
@@ -48,7 +48,7 @@ impl Workspace {
         self.folder.path().join(name)
     }
 
-    /// Writes a file, with the folders above it.
+    /// Writes a file, and creates its parent folders.
     pub fn write(&self, name: impl AsRef<Path>, bytes: impl AsRef<[u8]>) {
         let path = self.path(name);
         fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -64,7 +64,7 @@ impl Workspace {
         self.path(name).symlink_metadata().is_ok()
     }
 
-    /// The names of everything in the folder, hidden files included.
+    /// Returns the names of all entries of the folder, including hidden files.
     pub fn list(&self) -> Vec<String> {
         let mut names: Vec<String> =
             fs::read_dir(self.folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
@@ -72,7 +72,8 @@ impl Workspace {
         names
     }
 
-    /// The program, ready to run here under the name `name`: nothing depends on where the checkout lies.
+    /// Returns a command that runs the program here under the name `name`. Nothing depends on the place of the
+    /// checkout.
     pub fn command_as(&self, name: impl AsRef<OsStr>) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-oracle"));
         command.arg0(name).current_dir(self.folder.path()).env_clear().env("TMPDIR", self.folder.path());
@@ -89,7 +90,7 @@ impl Workspace {
         finish(self.command().args(arguments))
     }
 
-    /// Runs the program with something on its standard input.
+    /// Runs the program with the given standard input.
     pub fn run_with_input<S: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = S>, input: &[u8]) -> Run {
         let mut child = self.command().args(arguments).stdin(Stdio::piped()).spawn().unwrap();
         let mut stdin = child.stdin.take().unwrap();
@@ -134,7 +135,8 @@ impl Run {
     }
 }
 
-/// A ball falls on a half-plane; two steps, one collision in the first (the example of the format's description).
+/// A scene in which a ball falls on a half-plane: two steps, with a collision in the first (the example of the format's
+/// description).
 pub const BOUNCE: &str = r#"<scene>
   <description text="A ball bounces."/>
   <duration time="1"/>
@@ -145,7 +147,7 @@ pub const BOUNCE: &str = r#"<scene>
 </scene>
 "#;
 
-/// Two balls and an edge, hybrid handling; three steps.
+/// A scene with two balls and an edge, hybrid handling and three steps.
 pub const BEAM: &str = r#"<scene>
   <duration time="0.3"/>
   <integrator type="symplectic-euler" dt="0.1"/>
@@ -158,7 +160,7 @@ pub const BEAM: &str = r#"<scene>
 </scene>
 "#;
 
-/// A drifting ball without collision handling; four steps.
+/// A scene with a drifting ball, no collision handling and four steps.
 pub const DRIFT: &str = r#"<scene>
   <duration time="1"/>
   <integrator type="explicit-euler" dt="0.25"/>
@@ -167,7 +169,7 @@ pub const DRIFT: &str = r#"<scene>
 "#;
 
 impl Workspace {
-    /// A folder with `scene.xml` and its own trace `trace.bin`.
+    /// Creates a folder with `scene.xml` and its own trace `trace.bin`.
     pub fn with_trace(scene: &str) -> Self {
         let workspace = Self::new();
         workspace.write("scene.xml", scene);
@@ -176,17 +178,17 @@ impl Workspace {
     }
 }
 
-/// The reference trace of a scene.
+/// Returns the reference trace of a scene.
 pub fn trace_of(scene: &str) -> Vec<u8> {
     fosssim_oracle::suite::recording::Recording::for_scene("scene", scene.as_bytes()).unwrap().trace
 }
 
-/// A scene that comes with the program.
+/// Returns a scene that comes with the program.
 pub fn embedded(name: &str) -> Scene {
     scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
 }
 
-/// The reference trace of a scene that was read already.
+/// Returns the reference trace of a scene that has already been read.
 pub fn simulate(scene: &Scene) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());

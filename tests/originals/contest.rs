@@ -1,4 +1,4 @@
-//! Scenes of the contest, drawn at random: the original records and grades them as this project does, byte for byte.
+//! Random scenes of the contest: the original records and grades them exactly as this project does.
 use fosssim_oracle::{assignments::Assignment::T2M3, scene::original};
 use rayon::prelude::*;
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use crate::{
 
 const SCENES: u64 = 500;
 
-/// Random numbers (SplitMix64).
+/// A generator of random numbers (SplitMix64).
 struct Numbers(u64);
 
 impl Numbers {
@@ -29,13 +29,13 @@ impl Numbers {
         self.below(of) == 0
     }
 
-    /// Between -1 and 1.
+    /// Returns a number between -1 and 1.
     fn real(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
 
-/// A scene: clouds, grids, columns, ribbons, long edges; many bodies begin at the same place.
+/// Returns a scene with clouds, grids, columns, ribbons or long edges. Many bodies begin at the same place.
 fn scene(seed: u64) -> String {
     let mut numbers = Numbers(seed);
     let largest = [4, 16, 40, 120, 400][numbers.below(5) as usize];
@@ -57,7 +57,7 @@ fn scene(seed: u64) -> String {
         let (column, row) = ((index % wide) as f64, (index / wide) as f64);
         place = match shape {
             0 => [numbers.real() * wide as f64 * 0.25, numbers.real() * wide as f64 * 0.25],
-            // Neighbors of a grid overlap, touch or are apart by round-off.
+            // Neighbors in the grid overlap, touch, or are apart by round-off.
             1 => [0.25 * column, 0.25 * row],
             2 => [0.2 * column, 0.2 * row],
             3 => [0.5 * (index % 3) as f64, 0.125 * index as f64],
@@ -78,7 +78,7 @@ fn scene(seed: u64) -> String {
         )
         .expect("memory");
     }
-    // An edge without length makes numbers that are none, and the original's searches lose pairs then.
+    // An edge without length gives NaN, and the original's searches then lose pairs.
     let edges =
         if count > 1 && shape != 4 { [0, 1, count / 50, count / 2, count - 1][numbers.below(5) as usize] } else { 0 };
     let is_chain = numbers.is(2);
@@ -102,7 +102,7 @@ fn scene(seed: u64) -> String {
     text + "</scene>"
 }
 
-/// A submission: the recording, or something that is wrong with it.
+/// Returns a submission: the recording, or a wrong copy of it.
 fn submission(seed: u64, trace: &[u8]) -> Vec<u8> {
     let mut numbers = Numbers(!seed);
     let (mut own, doubles) = (trace.to_vec(), trace.len() as u64 / 8);
@@ -115,18 +115,18 @@ fn submission(seed: u64, trace: &[u8]) -> Vec<u8> {
         0 => {}
         1 => change(&mut numbers, &|value| value + 5e-11),
         2 => change(&mut numbers, &|value| value + 1e-3),
-        // In the last record, from which nothing is searched.
+        // This changes the last record, after which there is no search.
         3 => own.splice(trace.len() - 8.., f64::NAN.to_le_bytes()).for_each(drop),
         4 => change(&mut numbers, &|_| f64::INFINITY),
         5 => (0..doubles).for_each(|_| change(&mut numbers, &|value| value + 1e-9)),
         6 => own.truncate(numbers.below(trace.len() as u64) as usize),
-        // The order of ties goes on from states that no program has made.
+        // The order of ties continues from states that no program has computed.
         _ => (0..20).for_each(|_| change(&mut numbers, &|value| (4.0 * value).round() / 4.0)),
     }
     own
 }
 
-/// Standard output without the times that steps took.
+/// Returns standard output without the times of steps.
 pub fn timeless(run: &Run) -> String {
     let mut text = String::new();
     for line in run.out().lines() {

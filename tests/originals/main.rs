@@ -1,7 +1,7 @@
-//! Asks the course's original programs: what they record and what they say is compared with this project, byte for
-//! byte. One module per question.
+//! Runs the course's original programs, and compares their recordings and output with this project's, byte for byte.
+//! Each module asks one question.
 //!
-//! The originals are measuring instruments that lie beside the checkout, and no part of them is in the project.
+//! The originals are next to the checkout and used only for comparison. No part of them is in the project.
 #![forbid(unsafe_code)]
 
 mod contest;

@@ -1,4 +1,4 @@
-//! Runs the originals, under limits of time and memory: some input makes them run forever or take all memory.
+//! Runs the originals with limits of time and memory: some input makes them run forever or use all memory.
 use fosssim_oracle::assignments::Assignment;
 use fosssim_testing::{Need, skip};
 use std::{
@@ -9,18 +9,18 @@ use std::{
 
 use crate::workspace::{Run, finish};
 
-/// Seconds that a run may take.
+/// The time limit of a run, in seconds.
 const SECONDS: &str = "20";
 
-/// KiB of memory that a run may take.
+/// The memory limit of a run, in KiB.
 const MEMORY: &str = "4000000";
 
-/// The folder of the originals: `FOSSSIM_ORIGINALS`, else `../shared/originals` beside the checkout.
+/// The folder of the originals: `FOSSSIM_ORIGINALS`, or else `../shared/originals` next to the checkout.
 #[derive(Debug)]
 pub struct Originals(PathBuf);
 
 impl Originals {
-    /// Returns the folder, or says that the calling test is skipped.
+    /// Returns the folder, or prints that the calling test is skipped.
     pub fn find() -> Option<Self> {
         let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/originals");
         let folder = std::env::var_os("FOSSSIM_ORIGINALS").map_or(beside, PathBuf::from);
@@ -31,7 +31,7 @@ impl Originals {
         None
     }
 
-    /// Returns the folder of the programs, which lies beside that of the originals.
+    /// Returns the folder of the programs, which is next to that of the originals.
     pub fn programs(&self) -> PathBuf {
         self.0.with_file_name("programs")
     }

@@ -1,5 +1,5 @@
-//! Programs that nobody here wrote, linked to the course's starter libraries: right ones get all points of their
-//! milestone's suite, wrong ones less, and the drop-in says of their traces what the original says.
+//! Programs by other authors, linked to the course's starter libraries: right ones get all points of their milestone's
+//! suite, wrong ones get fewer, and the drop-in prints the same as the original for their traces.
 use fosssim_oracle::{
     assignments::Assignment::{self, T1M1, T1M2, T1M3, T2M1, T2M2, T2M3},
     suite::{library, plan},
@@ -21,7 +21,7 @@ use crate::{
     workspace::{Workspace, finish},
 };
 
-/// The milestones whose programs are tried here.
+/// The milestones whose programs are tested here.
 const MILESTONES: [Assignment; 6] = [T1M1, T1M2, T1M3, T2M1, T2M2, T2M3];
 
 /// Students' programs that the originals accept on every scene of the suite. All others have mistakes.
@@ -35,7 +35,7 @@ const RIGHT: [(Assignment, &str); 7] = [
     (T2M3, "real-h-x-f4"),
 ];
 
-/// The contest's suite without its scenes for speed: times decide nothing here.
+/// The contest's suite without its scenes for speed, because times do not matter here.
 const CONTEST: &str = r#"
 schema = 1
 name = "right pairs"
@@ -46,7 +46,7 @@ scenes = ["asset:t2m3/NearPairTests/*"]
 points = 100
 "#;
 
-/// The bytes of a program in which the number of its variant stands.
+/// The bytes of a program that contain the number of its variant.
 const TAG: &[u8] = b"MUTTAG=000";
 
 /// The programs of a milestone in a folder, and which of them are right.
@@ -56,13 +56,13 @@ struct Class {
     is_right: BTreeMap<String, bool>,
 }
 
-/// Reads one of the lists beside the programs.
+/// Reads one of the lists next to the programs.
 fn list(programs: &Path, name: &str) -> Value {
     serde_json::from_slice(&fs::read(programs.join(name)).expect("a list")).expect("JSON")
 }
 
 impl Class {
-    /// Unpacks the programs of a milestone, and writes the variants of those that have some.
+    /// Unpacks the programs of a milestone, and writes all variants of them.
     fn unpack(programs: &Path, milestone: Assignment) -> Self {
         let workspace = Workspace::new();
         let key = milestone.key();
@@ -97,7 +97,7 @@ impl Class {
         self.workspace.path(self.milestone.key()).join(name)
     }
 
-    /// Grades all programs up to their first wrong scene, and returns those whose points are not what they should be.
+    /// Grades all programs up to their first wrong scene, and returns those with unexpected points.
     fn misjudged(&self) -> Vec<String> {
         let key = self.milestone.key();
         self.workspace.write("contest.toml", CONTEST);
@@ -111,7 +111,7 @@ impl Class {
         let misjudged = grades.iter().filter_map(|grade| {
             let name = grade["submission"].as_str().expect("a name");
             let (reached, most) = (&grade["points"], &grade["max_points"]);
-            // Groups of extra points are among those that have to be accepted.
+            // Groups of extra points must be accepted, too.
             let mut groups = grade["groups"].as_array().expect("groups").iter();
             let is_right = reached == most && groups.all(|group| group["verdict"] == "accepted");
             (self.is_right[name] != is_right).then(|| format!("{key} {name}: {reached} of {most} points"))
@@ -127,7 +127,7 @@ impl Class {
         finish(program.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()));
     }
 
-    /// Returns how the drop-in and the original differ in what they say of a program's trace of a scene.
+    /// Returns how the output of the drop-in and the original differ for a program's trace of a scene.
     fn differs(&self, originals: &Originals, name: &str, scene: &str) -> Option<String> {
         let workspace = Workspace::new();
         workspace.write("scene.xml", library::scene(scene).expect("a scene"));
@@ -137,12 +137,12 @@ impl Class {
         }
         let grade = ["-s", "scene.xml", "-d", "0", "-i", "trace.bin"];
         let theirs = originals.run(self.milestone, &workspace.path(""), grade);
-        // Where an original hangs or dies there is nothing to compare with.
+        // If an original hangs or crashes, there is nothing to compare.
         let their_residuals = workspace.exists("residual.txt").then(|| workspace.read("residual.txt"))?;
         fs::remove_file(workspace.path("residual.txt")).expect("removed");
         let ours = workspace.original(grade);
         let our_residuals = workspace.exists("residual.txt").then(|| workspace.read("residual.txt"));
-        // A contest's output has the times that steps took.
+        // The output of a contest contains the times of steps.
         let says_the_same = match self.milestone {
             T2M3 => timeless(&theirs) == timeless(&ours),
             _ => theirs.stdout == ours.stdout,
@@ -169,7 +169,7 @@ fn right_programs_get_all_points_and_wrong_ones_less() {
     assert!(misjudged.is_empty(), "{misjudged:#?}");
 }
 
-/// A smallest scene is wrong for the same reason when it is run again, and right for every right program.
+/// A smallest scene is wrong for the same reason in a second run, and right for every right program.
 #[test]
 fn smallest_scenes_show_what_they_were_made_for() {
     let Some(originals) = Originals::find() else { return };
@@ -190,13 +190,14 @@ fn smallest_scenes_show_what_they_were_made_for() {
             let reason = small["explanations"][0]["key"].as_str().unwrap_or_else(|| panic!("{key} {name}: no cause"));
             workspace.write("scene.xml", small["scene"].as_str().expect("a scene"));
             class.run(name, workspace);
-            // On this scene alone another mistake may do the same, and come first.
+            // On this scene alone another mistake may have the same effect, and be named first.
             let again = workspace.run(["explain", "scene.xml", "trace.bin", "--format", "json"]);
             assert!(again.out().contains(&format!("\"{reason}\"")), "{key} {name}: {reason}\n{}", again.shown());
             let group = "[[group]]\nname = \"small\"\nscenes = [\"scene.xml\"]";
             let suite = format!("schema = 1\nname = \"small\"\nmilestone = \"{key}\"\n{group}\n");
             workspace.write("small.toml", suite);
-            // Its solver needs symmetric matrices: the original rejects it on other scenes (docs/rules/states.md).
+            // The program's solver needs symmetric matrices: the original rejects it on other scenes
+            // (docs/rules/states.md).
             let is_limited = |name: &str| (class.milestone, name) == (T1M3, "variant-105");
             let right = class.is_right.iter().filter(|(name, right)| **right && !is_limited(name));
             let right = right.map(|(name, _)| class.program(name).to_string_lossy().into_owned());
@@ -207,7 +208,7 @@ fn smallest_scenes_show_what_they_were_made_for() {
     }
 }
 
-/// Each program meets every twentieth scene of its suite, the next one those beside them.
+/// Each program runs every twentieth scene of its suite, and the next program runs the scenes after those.
 #[test]
 fn the_drop_in_says_of_every_program_what_the_original_says() {
     const EVERY: usize = 20;

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::{oracle::Originals, workspace::Workspace};
 
-/// The original's trace of a scene, and what was printed above it.
+/// Returns the original's trace of a scene, and its output before the trace.
 fn original(originals: &Originals, milestone: Assignment, scene: &[u8]) -> Result<Vec<u8>, String> {
     let workspace = Workspace::new();
     workspace.write("scene.xml", scene);

@@ -40,7 +40,7 @@ fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
     assert!(evidence.inspected.is_empty());
 }
 
-/// A wrong failsafe is charged where it happens; what follows from it is no error of its own.
+/// A wrong failsafe is reported where it happens; its consequences are not reported as separate errors.
 #[test]
 fn own_errors_are_told_from_inherited_ones() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");
@@ -62,7 +62,7 @@ fn own_errors_are_told_from_inherited_ones() {
     assert!(evidence.steps[first as usize - 1].position > 1e-10);
 }
 
-/// A wrong polynomial has its call with both sides.
+/// A wrong polynomial has its detection call, with the polynomials of both the trace and the reference.
 #[test]
 fn a_finding_about_a_polynomial_has_its_call() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
@@ -78,7 +78,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     assert!(close.passes[0].differing_pairs.contains(&place.pair));
 }
 
-/// A long motion is shown around its first wrong step, and every record that is shown is exact.
+/// A long motion is shown around its first wrong step, and every displayed record is exact.
 #[test]
 fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
     let layout = Layout { particles: 10, has_impulses: true, has_polynomials: true, steps: 1000 };
@@ -114,7 +114,7 @@ fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
     assert!(evidence.steps.iter().filter(|other| other.class != StepClass::Wrong).all(|other| other.position < 1e-10));
 }
 
-/// Where polynomials are missing or too many, the pairs that they belong to are told.
+/// If there are too few or too many polynomials, the report names the pairs to which they belong.
 #[test]
 fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
@@ -128,7 +128,7 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     let polynomials = |pair: &Pair| if pair.kind == PairKind::ParticleEdge { 4 } else { 2 };
     let missing: usize = pass.missing_pairs.iter().map(polynomials).sum();
     assert_eq!(missing, pruned.expected_polynomials - pruned.actual_polynomials);
-    // One of them is looked at, although no finding names it.
+    // One of them is in the evidence, although no finding names it.
     assert!(pruned.calls.iter().any(|call| call.logged == CallLog::Nothing && pass.missing_pairs.contains(&call.pair)));
     let twice = close("pairs-both-orders");
     let pass = &twice.passes[0];
@@ -138,7 +138,7 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     assert_eq!(twice.surplus_polynomials, Some(twice.actual_polynomials - twice.expected_polynomials));
 }
 
-/// A pair is looked at from the trace's own mid record, too.
+/// A pair is also shown from the trace's own mid record.
 #[test]
 fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");

@@ -375,7 +375,7 @@ mod tests {
             "(0.5, 0.666667), expected (0.333333, 0.666667), distance 0.167"
         );
         assert_eq!(words([1e300, 0.0], [f64::NAN, 0.0]), "(NaN, 0), expected (1e300, 0), distance NaN");
-        // However far one vector is, the other keeps its digits.
+        // If one vector is very large, the other one keeps its digits.
         assert_eq!(
             words([-0.764_179_123, 0.137_576_456], [-6.935_630_093_907_413e130, 2.5e130]),
             "(-6.93563e130, 2.5e130), expected (-0.764179, 0.137576), distance 7.37e130"

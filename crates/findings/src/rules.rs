@@ -142,7 +142,7 @@ mod tests {
         assert!(!Rules::Parity.includes_fair());
     }
 
-    /// Points may follow from the steps: a trace that is not accepted never has all of them.
+    /// Points may depend on the steps: a trace that is not accepted never gets all of them.
     #[test]
     fn a_wrong_answer_has_a_wrong_step() {
         let mut outcome = Outcome::empty(3);

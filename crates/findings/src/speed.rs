@@ -158,7 +158,7 @@ mod tests {
         assert_eq!([0.5, 2.0, 4.0, 6.0, 10.0, 99.0].map(at), [40.0, 40.0, 30.0, 20.0, 0.0, 0.0]);
     }
 
-    /// The second round was disturbed: it widens the spread, and costs nothing.
+    /// The second round was disturbed. It increases the spread, but costs no points.
     #[test]
     fn the_least_times_count_and_the_spread_is_told() {
         let right = Verdict::Accepted;

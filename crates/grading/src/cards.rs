@@ -178,7 +178,7 @@ mod tests {
         assert!(lacks(&other));
     }
 
-    /// Staff's card never takes the place of the one for students.
+    /// A card for staff never replaces the card for students.
     #[test]
     fn students_have_a_card_of_their_own_where_they_are_told_less() {
         let (scene, outcome, result) = wrong();
@@ -201,7 +201,7 @@ mod tests {
             assert!(!cards.lacks_card(&told, students));
             limit_result(students, &mut told);
             assert_eq!(told.card, own);
-            // A result of a grading that made no page for students is graded again for one.
+            // If a grading made no pages for students, its results are graded again for such pages.
             let kept = SceneResult { card_for_students: None, ..told };
             let kept = SceneResult { card: cards.store_cards(&judged, students).expect("written").0, ..kept };
             assert_eq!(cards.lacks_card(&kept, students), for_students && students > Hints::None);

@@ -264,7 +264,7 @@ mod tests {
     use fosssim_student::{self as student, Mistake, Student};
     use fosssim_testing::scenes;
 
-    /// Explaining takes as long as judging many traces, so it is skipped if no reader may see it.
+    /// Explaining takes as long as judging many traces, so it is skipped if no reader may see the result.
     #[test]
     fn what_is_not_told_is_not_explained() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;

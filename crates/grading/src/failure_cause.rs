@@ -131,7 +131,8 @@ mod tests {
         FeatureIndex { family, value }
     }
 
-    /// Scenes by their contents: a contact each; some have a zone, of which some are held by a half-plane.
+    /// Returns the features of scenes that each have a contact. Some have a zone, and some of these zones touch a
+    /// half-plane.
     fn scenes(zones: usize, held: usize, all: usize) -> Vec<Features> {
         let scene = |number: usize| {
             let mut features = Features::from([feature(0, None), feature(0, Some((0, number % 3)))]);
@@ -160,8 +161,8 @@ mod tests {
             (found.failed, found.scenes_with_features, found.scenes_without_features, found.step),
             (24, 24, 61, 7)
         );
-        // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
-        // place.
+        // Both the kind of event and a property of the step that occurs in the same scenes are reported. The zones' own
+        // values are not another feature.
         assert_eq!(found.features, [feature(4, None), feature(6, Some((1, 1)))].map(FeatureIndex::to_feature));
         let narrower = located(&features, |number| (number < 9).then_some(FailureKind::Time)).expect("a place");
         assert_eq!(

@@ -66,10 +66,10 @@ mod tests {
         let fault = catch_panic(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
         assert!(fault.starts_with("no tea left at ") && fault.contains("guard.rs:"), "{fault}");
         assert_eq!(catch_panic(|| 7), Ok(7));
-        // A panic within another, and one that was forwarded through another thread.
+        // This nests one panic in another, and forwards a panic through another thread.
         let nested = catch_panic(|| catch_panic(|| panic!("inner")).map_err(|fault| fault.to_string().len()));
         assert!(matches!(nested, Ok(Err(1..))), "{nested:?}");
-        // A panic that began on another thread continues without a call of the hook.
+        // A panic that began on another thread continues without calling the hook again.
         let elsewhere = catch_panic(|| panic::resume_unwind(Box::new("elsewhere")));
         assert_eq!(elsewhere, Err(CaughtPanic("elsewhere".to_owned())));
     }

@@ -105,7 +105,7 @@ mod tests {
             ResultKey::from_program(&blake3::hash(b"x"), b"scene", &[]),
             ResultKey::from_program(&program, b"scene", &[])
         );
-        // Two builds of one version are two judges.
+        // Two builds of one version count as two different judges.
         assert_ne!(
             ResultKey::from_parts("one build", &program, b"scene", &[]),
             ResultKey::from_parts("another", &program, b"scene", &[])
@@ -128,7 +128,7 @@ mod tests {
         program.resize(64 + 56, 0);
         (program[32], program[56], program[64]) = (64, 1, 4);
         (program[64 + 8], program[64 + 32]) = (120, 20 + 36);
-        // A note of another program, then the build ID.
+        // The note of another program comes first, then the build ID.
         program.extend([5, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"none\0\0\0\0"));
         program.extend([4, 0, 0, 0, 20, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"GNU\0").chain(&[7; 20]));
         assert_eq!(read(&program), Some(vec![7; 20]));

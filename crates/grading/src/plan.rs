@@ -230,7 +230,7 @@ mod tests {
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
         assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
         assert!(error.contains("is in group \"b\" already"), "{error}");
-        // Search scenes even if something else is wrong.
+        // The scenes are searched even if another part is wrong.
         let both = text.replacen("name = \"x\"", "name = \"x\"\nhint = \"what\"", 1);
         let error = load_suite(&both, Path::new("nowhere")).expect_err("wrong").to_string();
         assert!(error.starts_with("3:1: unknown key `hint` in the suite: did you mean `hints`?\n6:11: no "), "{error}");

@@ -175,7 +175,7 @@ mod tests {
     use fosssim_sandbox::{FakeRun, RunEnd};
     use std::{os::unix::fs::PermissionsExt, path::PathBuf, process::Command};
 
-    /// Stages as a suite without a build does.
+    /// Stages a submission as a suite without a build does.
     fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<StagedProgram, String>) -> StagedProgram {
         let (backend, cancellation) =
             (Backend::fake(|_| FakeRun::with_end(RunEnd::Exited(0))), Cancellation::default());
@@ -206,7 +206,7 @@ mod tests {
         assert_eq!(staged.unusable_reason, Some(UnusableReason::CouldNotStart(StartProblem::IsFolder)));
     }
 
-    /// Packs the contents of a folder, under this name next to it.
+    /// Packs the contents of a folder under this name, next to the folder.
     fn packed(folder: &Path, name: &str) -> PathBuf {
         let archive = folder.with_file_name(name);
         let packing = Command::new("tar").arg("czf").arg(&archive).arg("-C").arg(folder).arg(".").status();
@@ -246,7 +246,7 @@ mod tests {
         std::fs::write(&archive, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
         let damaged = program(&archive).unusable_reason.map(|why| format!("{why:?}"));
         assert!(damaged.as_ref().is_some_and(|why| why.contains("damaged")), "{damaged:?}");
-        // Two archives, and the right one is unknown.
+        // There are two archives, and the right one is unknown.
         std::fs::copy(moodle.join("hw.tgz"), moodle.join("other.tgz")).unwrap();
         let two = staged(|recipe| recipe.stage_file_in(&moodle, "FOSSSim", None)).unusable_reason;
         assert_eq!(two, Some(upload::explain_missing_program("FOSSSim", &moodle)));

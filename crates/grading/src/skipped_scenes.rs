@@ -96,7 +96,7 @@ mod tests {
             "the worst of the row"
         );
         assert_eq!(end(&[LATE, LATE, FINE, LATE]), None);
-        // A scene without a verdict yet is no link of the chain, and the end can only move forward.
+        // A scene without a verdict does not belong to the chain, and the end can only move forward.
         assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(super::find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);

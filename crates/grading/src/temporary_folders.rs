@@ -188,7 +188,7 @@ mod tests {
         let left = killed.path.clone();
         fs::create_dir_all(left.join("run-1").join("d/".repeat(1500))).unwrap();
         fs::write(living.path.join("program"), "x").unwrap();
-        // As after a kill: the lock is released, the folder stays.
+        // This is the state after a kill: the lock is released, but the folder remains.
         let GraderFolder { path: _, _lock: ref lock } = killed;
         lock.unlock().unwrap();
         std::mem::forget(killed);

@@ -480,7 +480,7 @@ mod tests {
     #[test]
     fn files_that_lie_in_one_another_are_read_so_often_only() {
         const FILES: u16 = 200;
-        // One mebibyte of empty blocks.
+        // The content is one mebibyte of empty blocks.
         let content = [&[0, 0, 0, 0xff, 0xff].repeat(200_000)[..], &[3, 0]].concat();
         let fields = |numbers: &[(u64, usize)]| -> Vec<u8> {
             numbers.iter().flat_map(|(number, size)| number.to_le_bytes()[..*size].to_vec()).collect()

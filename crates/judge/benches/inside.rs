@@ -94,7 +94,8 @@ fn measure(scene: &Scene, rounds: u32, what: &str, given: Option<Vec<u8>>) -> Ve
     times
 }
 
-/// The minimum time of several rounds, in milliseconds. The single thread never waits, so this is processor time.
+/// Returns the minimum time of several rounds, in milliseconds. The single thread never waits, so this is processor
+/// time.
 fn least(rounds: u32, mut work: impl FnMut()) -> f64 {
     let round = |_| {
         let begin = Instant::now();
@@ -126,12 +127,12 @@ fn judge(scene: &Scene, trace: &[u8], fair: bool) {
     black_box(replay::judge(scene, trace, &options, &mut ()));
 }
 
-/// The trace with other coefficients.
+/// Returns the trace with every coefficient multiplied by a factor.
 fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
     with(scene, trace, |coefficient, _| factor * coefficient)
 }
 
-/// The trace with an additional rounding in every third coefficient.
+/// Returns the trace with an additional rounding error in every third coefficient.
 fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     with(
         scene,
@@ -142,7 +143,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     )
 }
 
-/// The trace with coefficients computed from each coefficient and its number in its record.
+/// Returns the trace with coefficients computed from each coefficient and its number in its record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::for_scene(scene);
     let (mut reader, mut writer) = (Reader::from_slice(trace, layout), Writer::new(Vec::new(), layout));
@@ -156,7 +157,7 @@ fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) ->
     writer.finish().expect("memory").0
 }
 
-/// Instructions of single pieces of work, compared with the stored counts.
+/// Prints the instructions of single tasks, compared with the stored counts.
 fn instructions(store: bool) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/t2m2");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
@@ -180,7 +181,7 @@ fn instructions(store: bool) {
     }
 }
 
-/// The instructions of one round of work on a scene, including the start of this program.
+/// Returns the number of instructions of one round of work on a scene, including the start of this program.
 fn counted(what: &str, scene: &str) -> f64 {
     let program = std::env::current_exe().expect("this program");
     let mut command = Command::new("valgrind");
@@ -191,7 +192,7 @@ fn counted(what: &str, scene: &str) -> f64 {
     count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
 }
 
-/// The cost of a step of penalty scenes with increasing numbers of balls at one density.
+/// Prints the cost of a step in penalty scenes with increasing numbers of balls at the same density.
 fn crowd() {
     println!("| balls | instructions of a step, a ball |\n|---:|---:|");
     let file = std::env::temp_dir().join(format!("fosssim-crowd-{}.xml", std::process::id()));
@@ -206,7 +207,7 @@ fn crowd() {
     std::fs::remove_file(&file).expect("removed");
 }
 
-/// Balls that fly about and repel each other, in the order of the contest.
+/// Returns a scene in which balls move and repel each other, with the contest's order of sums.
 fn box_of(balls: u32, steps: u32) -> String {
     let half = 0.5 * (f64::from(balls) / 150.0).sqrt();
     let mut xml = format!(
@@ -226,7 +227,7 @@ fn box_of(balls: u32, steps: u32) -> String {
     xml + "</scene>"
 }
 
-/// The cost of recording scenes with several hits in each step.
+/// Prints the cost of recording scenes with several hits in each step.
 fn hits() {
     println!("| scene | steps | hits | trace, MB | record, millions of instructions |\n|---|---:|---:|---:|---:|");
     let file = std::env::temp_dir().join(format!("fosssim-hits-{}.xml", std::process::id()));
@@ -241,13 +242,13 @@ fn hits() {
         std::fs::write(&file, xml).expect("a file");
         let (steps, size) = (scene.step_count(), trace.len() as f64 / 1e6);
         let counted = counted("record", file.to_str().expect("a name in UTF-8")) / 1e6;
-        // Both records of a step have its impulses.
+        // Both records of a step contain its impulses.
         println!("| {name} | {steps} | {} | {size:.1} | {counted:.1} |", impulses / 2);
     }
     std::fs::remove_file(&file).expect("removed");
 }
 
-/// The beginning of a scene of `steps` steps of 0.01 seconds, with gravity and `continuous-time`.
+/// Returns the beginning of a scene of `steps` steps of 0.01 seconds, with gravity and `continuous-time`.
 fn falling(steps: u32, restitution: f64) -> String {
     format!(
         r#"<scene><duration time="{}"/><integrator type="symplectic-euler" dt="0.01"/>
@@ -256,7 +257,7 @@ fn falling(steps: u32, restitution: f64) -> String {
     )
 }
 
-/// Four balls between two fixed edges that form a V.
+/// Returns four balls between two fixed edges that form a V.
 fn bowl() -> String {
     let mut xml = falling(3000, 0.0);
     for ball in 0..4 {
@@ -269,7 +270,7 @@ fn bowl() -> String {
     xml + r#"<edge i="4" j="5" radius="0.1"/><edge i="5" j="6" radius="0.1"/></scene>"#
 }
 
-/// Eight balls in a ring of edges with springs, above a fixed edge.
+/// Returns eight balls in a ring of edges with springs, above a fixed edge.
 fn ring() -> String {
     let mut xml = falling(1000, 0.5);
     for ball in 0..8 {
@@ -288,7 +289,7 @@ fn ring() -> String {
     xml + r#"<edge i="8" j="9" radius="0.1"/></scene>"#
 }
 
-/// The cost of a pair, and the peak memory so far, in scenes with increasing numbers of particles.
+/// Prints the cost of a pair, and the peak memory so far, in scenes with increasing numbers of particles.
 fn growth() {
     println!(
         "| particles | pairs in a pass | record, ns a pair | grade, ns a pair | trace, MB | most memory so far, MB |"
@@ -316,7 +317,8 @@ fn growth() {
     }
 }
 
-/// Balls in rows above a floor and next to a wall, every tenth at the end of an edge. They begin to fall.
+/// Returns balls in rows above a floor and next to a wall, every tenth of them at the end of an edge. The balls begin
+/// to fall.
 fn heap(particles: usize) -> String {
     let mut xml = String::from(
         r#"<scene><duration time="0.03"/><integrator type="symplectic-euler" dt="0.01"/>
@@ -334,7 +336,7 @@ fn heap(particles: usize) -> String {
     xml + "</scene>"
 }
 
-/// The peak memory of this process, in megabytes.
+/// Returns the peak memory of this process, in megabytes.
 fn most_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("a peak");

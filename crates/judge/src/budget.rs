@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(ends[0], ends[2]);
     }
 
-    /// Such a scene takes only elimination, and a second run would double the time of a grading.
+    /// Such a scene needs only elimination, and a second run would double the time of a grading.
     #[test]
     fn an_implicit_scene_is_not_run_to_allow_its_own_work() {
         let particles = (0..40).map(|x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="0"/>"#));

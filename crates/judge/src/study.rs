@@ -252,7 +252,7 @@ mod tests {
         assert_eq!(study.answer.positive_intervals[0].lo, time);
         assert_eq!(motion.normal(time), Some(normal));
         assert_eq!(study.certain_decision, Some(true));
-        // The edge turns: the right polynomial differs, in t^3 only, and the contact is the same.
+        // The edge turns: the right polynomial differs, only in t^3, and the contact is the same.
         let right = study.right_approach.unwrap();
         let (course, right_one) = (study.curves[3].untrimmed, right.curve.untrimmed);
         let differing: Vec<usize> =

@@ -456,8 +456,8 @@ mod tests {
         assert!(!are_equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
-    /// A polynomial that clearly has a factor passes, and nearly every polynomial that passes with a factor has it
-    /// clearly.
+    /// A polynomial that clearly has a factor is accepted, and nearly every polynomial that is accepted with a factor
+    /// has it clearly.
     #[test]
     fn what_clearly_has_a_factor_passes() {
         let mut seed = 1_u64;

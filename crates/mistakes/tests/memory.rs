@@ -1,4 +1,4 @@
-//! The memory that it takes to explain a small trace of a large scene.
+//! The memory that explaining a small trace of a large scene needs.
 use fosssim_mistakes::diagnose::explain;
 use fosssim_model::scene::{Collision, CollisionDetection, Display, Edge, Integrator, Particle, Scene};
 use fosssim_num::vector::Vec2;
@@ -11,7 +11,7 @@ use std::{
 static NOW: AtomicUsize = AtomicUsize::new(0);
 static PEAK: AtomicUsize = AtomicUsize::new(0);
 
-/// The system's allocator, which also knows how much is in use, and how much ever was.
+/// The system's allocator, which also counts the bytes in use and their maximum.
 struct Counting;
 
 // SAFETY: every call goes to the system's allocator unchanged.
@@ -33,7 +33,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Balls in a row, far apart, with an edge from each to the next.
+/// Returns a scene with balls in a row, far apart, with an edge from each to the next.
 fn row(balls: u32, collision: Collision) -> Scene {
     let particle = |number: u32| Particle {
         position: Vec2::new(f64::from(number), 0.0),
@@ -58,10 +58,10 @@ fn row(balls: u32, collision: Collision) -> Scene {
     }
 }
 
-/// How much more memory explaining takes than there was before, of a trace that is wrong in every step.
+/// Returns the additional memory for explaining a trace that is wrong in every step.
 fn peak_of(scene: &Scene) -> usize {
     let mut trace = student::record_trace(scene, Student::default()).unwrap_or_else(|(bytes, _)| bytes);
-    // The first particle is elsewhere in each record but the first.
+    // The first particle has another position in each record except the first.
     let record = 32 * scene.particles.len();
     for start in (record..trace.len()).step_by(record) {
         trace[start..start + 8].copy_from_slice(&0.5_f64.to_le_bytes());
@@ -72,7 +72,8 @@ fn peak_of(scene: &Scene) -> usize {
     PEAK.load(Relaxed) - before
 }
 
-/// No program of the catalogue needs a list of the scene's pairs: memory grows with the scene and not with its pairs.
+/// No program of the catalogue needs a list of the scene's pairs, so memory grows with the scene and not with the
+/// number of pairs.
 #[test]
 fn memory_grows_with_the_scene_and_not_with_its_pairs() {
     let of = |balls: u32| {

@@ -173,7 +173,7 @@ impl<N: Number + Modulus> Mul<BoundedVector<N>> for BoundedValue<N> {
 mod tests {
     use super::*;
 
-    /// The rules of running error analysis on numbers that can be computed by hand.
+    /// These are the rules of running error analysis for numbers that can be computed by hand.
     #[test]
     fn each_operation_has_the_bound_of_its_rule() {
         let number = |value: f64, bound: f64| BoundedValue { value, bound };

@@ -201,7 +201,7 @@ mod tests {
         let never = Polynomial::trimmed(&[-1.0]);
         let endless = Polynomial::trimmed(&[1.0, f64::NAN, 1.0, 1.0]);
         assert!(first_time(&[never, endless]).is_err());
-        // Degree two returns normally whatever its coefficients are.
+        // The search for degree two ends, whatever its coefficients are.
         let infinite = Polynomial::trimmed(&[1.0, f64::INFINITY, 1.0]);
         assert_eq!(first_time(&[never, infinite]).expect("terminates"), f64::INFINITY);
     }

@@ -277,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Returns the specification word by word, with a matrix of rows: slow and plain.
+    /// Computes the specification literally, with a matrix of rows: slow but simple.
     fn literal(a: &mut [Vec<f64>], rhs: &[f64]) -> Vec<f64> {
         let n = rhs.len();
         let mut c = rhs.to_vec();
@@ -392,7 +392,7 @@ mod tests {
         }
     }
 
-    /// NaN and infinity below the pivots: comparisons and results are as in the plain order.
+    /// NaN and infinity are below the pivots: comparisons and results are as in the specified order.
     #[test]
     fn values_that_are_no_numbers_are_passed_over_where_pivots_are_chosen() {
         let mut numbers = Numbers(5);
@@ -410,7 +410,7 @@ mod tests {
         }
     }
 
-    /// Matrices of few springs: whole columns stay as they are, unless a zero has a sign or a value is no number.
+    /// In matrices of few springs, whole columns stay unchanged, unless a zero has a sign or a value is not finite.
     #[test]
     fn zeros_have_the_bits_of_the_specification() {
         let mut numbers = Numbers(11);
@@ -433,11 +433,11 @@ mod tests {
     #[test]
     fn unknowns_beyond_the_rank_are_zero() {
         let mut workspace = Workspace::default();
-        // Two equal rows: x + y = 2 leaves y free, and the first column wins the tie.
+        // Two rows are equal: x + y = 2 leaves y free, and the first column is chosen.
         let mut rhs = [2.0, 2.0];
         solve(&mut [1.0, 1.0, 1.0, 1.0], &mut rhs, &mut workspace);
         assert_eq!(rhs, [2.0, 0.0]);
-        // 1e-17 of the first pivot is no pivot, 1e-15 is one.
+        // A value of 1e-17 times the first pivot does not count as a pivot, but 1e-15 does.
         let mut rhs = [1.0, 1.0];
         solve(&mut [1.0, 0.0, 0.0, 1e-17], &mut rhs, &mut workspace);
         assert_eq!(rhs, [1.0, 0.0]);

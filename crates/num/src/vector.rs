@@ -69,7 +69,7 @@ mod tests {
         (-1e3..1e3, -1e3..1e3).prop_map(|(x, y)| Vec2::new(x, y))
     }
 
-    /// With the reciprocal, five thirds are one rounding smaller than with a division.
+    /// With the reciprocal, five thirds are one rounding error smaller than with a division.
     #[test]
     fn a_vector_is_divided_by_way_of_the_reciprocal() {
         let reciprocal = 1.0 / 3.0;

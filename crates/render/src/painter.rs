@@ -362,7 +362,7 @@ mod tests {
         let huge = SCENE.replace(r#"radius="0.5""#, r#"radius="1e9""#);
         let shapes = self::painter(&huge).picture(0, &[-1e9, 0.0, 1.0, 0.0], None);
         let Some(Shape::Area { points, .. }) = shapes.get(shapes.len() - 3) else { panic!("{shapes:?}") };
-        // Its edge is in the middle of the picture.
+        // The half-plane's edge is in the middle of the image.
         assert!(points.iter().all(|point| point[0] < 200.1), "{points:?}");
     }
 }

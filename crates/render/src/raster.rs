@@ -161,7 +161,7 @@ mod tests {
         ]
     }
 
-    /// The product promises equal pixels on two runs, and on two machines of the same kind.
+    /// The product promises equal pixels in two runs, and on two machines of the same kind.
     #[test]
     fn pixels_are_equal_on_every_run() {
         let mut raster = Raster::new(Size::new(64, 48).unwrap());

@@ -285,7 +285,7 @@ pub(crate) mod tests {
         );
     }
 
-    /// The reference makes the mistake and writes the same, so other weights that fit its polynomials add no
+    /// The reference makes the mistake and writes the same values, so other weights that fit its polynomials add no
     /// information.
     #[test]
     fn a_known_mistake_comes_without_other_weights_that_fit() {

@@ -96,7 +96,7 @@ mod tests {
         }
     }
 
-    /// Words of the assignment stay searchable: only signs change.
+    /// Words of the assignment can still be found: only symbols change.
     #[test]
     fn every_exact_form_of_the_catalogue_keeps_its_words() {
         let words = |line: &str| -> Vec<String> {

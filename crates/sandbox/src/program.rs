@@ -329,7 +329,7 @@ mod tests {
         let problem = examine(&path, &[]).unwrap_err();
         let StartProblem::MissingInterpreter { interpreter, .. } = &problem else { panic!("{problem}") };
         assert_eq!(interpreter, "/usr/bin/no-shell");
-        // Whether the interpreter exists without the carriage return does not matter.
+        // It does not matter whether the interpreter exists without the carriage return.
         let (_kept, path) = written("a", b"#!/bin/sh\r\nexit 0\r\n", 0o755);
         let problem = examine(&path, &[]).unwrap_err().to_string();
         assert!(problem.contains("interpreter /bin/sh\\r is not") && problem.contains("carriage return"), "{problem}");

@@ -1,8 +1,8 @@
-//! The needs of tests from a machine, and their message if one is not met. Only tests use it.
+//! The features of a machine that tests need, and the message if one is missing. Only tests use this crate.
 //!
-//! A test that can't run calls [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
-//! (the test `skips` of this crate, which comes last because of the crate's name). If `FOSSSIM_REQUIRE` names the need,
-//! or is `all`, the test fails instead: a machine that is known to have something can't pass without it.
+//! A test that cannot run calls [`skip`] and returns. This adds a line to a list, which `cargo test` prints at its end
+//! (by the test `skips` of this crate, which comes last because of the crate's name). If `FOSSSIM_REQUIRE` names the
+//! need, or is `all`, the test fails instead, so a machine that has something can never pass without it.
 #![forbid(unsafe_code)]
 
 pub mod scenes;
@@ -12,10 +12,10 @@ use std::{fmt, fs, io::Write, path::PathBuf};
 /// Needs whose absence makes a test fail, separated by commas.
 pub const REQUIRE: &str = "FOSSSIM_REQUIRE";
 
-/// The file that the list is kept in. Without it there is one per run of `cargo test`.
+/// The file that contains the list. Without this variable there is one file per run of `cargo test`.
 pub const LIST: &str = "FOSSSIM_SKIPS";
 
-/// A need that not every machine meets.
+/// Something that not every machine has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Need {
     /// The ground-truth corpus next to the checkout.
@@ -24,7 +24,8 @@ pub enum Need {
     Originals,
     /// A kernel that can run programs safely.
     Sandbox,
-    /// Namespaces, control groups and other walls that only some hosts have, and the right to do without some.
+    /// Namespaces, control groups and other layers of protection that only some hosts have, and the right to run
+    /// without some of them.
     Walls,
     /// A C compiler, `cc`.
     Cc,
@@ -54,13 +55,13 @@ pub enum Need {
     Yaml,
     /// Python's `chevron`.
     Chevron,
-    /// `moto_server`, which answers like S3.
+    /// The program `moto_server`, which behaves like S3.
     Moto,
     /// The right to mount a file system.
     Mounts,
 }
 
-/// All needs, each with its name in `FOSSSIM_REQUIRE`.
+/// All needs with their names in `FOSSSIM_REQUIRE`.
 const NAMES: [(Need, &str); 20] = [
     (Need::Corpus, "corpus"),
     (Need::Originals, "originals"),
@@ -97,10 +98,10 @@ impl fmt::Display for Need {
     }
 }
 
-/// Reports that the calling test can't run, and why; the test returns then.
+/// Reports that the calling test cannot run, and why; the test then returns.
 ///
 /// # Panics
-/// Panics if `FOSSSIM_REQUIRE` names the need, or holds an unknown word.
+/// Panics if `FOSSSIM_REQUIRE` names the need, or contains an unknown word.
 pub fn skip(need: Need, why: impl fmt::Display) {
     let why = why.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();
@@ -110,13 +111,13 @@ pub fn skip(need: Need, why: impl fmt::Display) {
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     eprintln!("skipped {test}: {why}");
     let Some(list) = list() else { return };
-    // One write per line: tests of one run are threads and processes.
+    // Each line is one write, because the tests of one run are threads and processes.
     let line = format!("{need}\t{test}\t{why}\n");
     let file = fs::OpenOptions::new().create(true).append(true).open(list);
     drop(file.and_then(|mut file| file.write_all(line.as_bytes())));
 }
 
-/// Checks that a test may be skipped for want of this.
+/// Checks that a test may be skipped if this is missing.
 fn check_allowed(need: Need, required: &str) -> Result<(), String> {
     for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
         if word == "all" || word == need.name() {
@@ -131,7 +132,7 @@ fn check_allowed(need: Need, required: &str) -> Result<(), String> {
 }
 
 /// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
-/// get a list only if one is set.
+/// have a list only if the variable is set.
 pub fn list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
         return Some(list.into());
@@ -140,7 +141,7 @@ pub fn list() -> Option<PathBuf> {
     of_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
 }
 
-/// Returns the list in few lines, by need: how many tests, and why.
+/// Returns a short form of the list, by need: how many tests, and why.
 pub fn summary(list: &str) -> String {
     let mut lines = String::new();
     let mut total = 0;

@@ -1,7 +1,7 @@
 //! Scenes that tests of several crates simulate.
 
-/// An edge that turns and two discs that meet it and each other, above a slanted half-plane: `hybrid`, all kinds of
-/// pairs.
+/// A scene with an edge that turns, and two discs that meet it and each other, above a slanted half-plane: `hybrid`,
+/// with all kinds of pairs.
 pub const ALL_KINDS: &str = "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\
     <collision type=\"hybrid\" COR=\"0.8\" maxiters=\"2\"/>\
     <particle m=\"1\" px=\"-2\" py=\"0.1\" vx=\"3\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\

@@ -1,16 +1,16 @@
-//! The last words of `cargo test`: which tests did not run on this machine, and why. A program of its own, because the
-//! usual harness keeps what tests print to itself.
+//! The last output of `cargo test`: the tests that did not run on this machine, and why. This is a separate program,
+//! because the usual harness hides the output of tests.
 #![forbid(unsafe_code)]
 
 fn main() {
-    // A program that lists tests, such as cargo nextest, finds none here.
+    // A program that lists tests, such as cargo nextest, finds no tests here.
     if std::env::args().any(|word| word == "--list") {
         return;
     }
     let Some(path) = fosssim_testing::list() else { return };
     let list = std::fs::read_to_string(&path).unwrap_or_default();
     print!("\n{}", fosssim_testing::summary(&list));
-    // A list that somebody asked for stays; ours has been read.
+    // A list with a name from the user stays. The default list has been read, and is removed.
     if std::env::var_os(fosssim_testing::LIST).is_none() {
         drop(std::fs::remove_file(path));
     }

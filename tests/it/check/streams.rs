@@ -123,7 +123,7 @@ fn nobody_listening_does_not_change_the_verdict() {
         drop(child.stdout.take());
         assert_eq!(child.wait().unwrap().code(), Some(code), "{trace}");
     }
-    // A full disk is our fault, not the trace's.
+    // A full disk is the machine's fault, not the trace's.
     let full = File::options().write(true).open("/dev/full").unwrap();
     let run = finish(workspace.command().args(["check", "scene.xml", "trace.bin"]).stdout(Stdio::from(full)));
     assert_eq!(run.code, Some(2));

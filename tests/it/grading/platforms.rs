@@ -1,4 +1,4 @@
-//! Autograders of platforms, each in the layout that its platform gives it.
+//! Autograders of platforms, each in the folder layout of its platform.
 use super::{SUITE, submit, workspace};
 use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
@@ -9,7 +9,7 @@ use std::{
     process::Command,
 };
 
-/// A workspace where the sandbox, bash and Python are at hand.
+/// Returns a workspace if the sandbox, bash and Python are available.
 fn with_python() -> Option<Workspace> {
     let workspace = workspace()?;
     if Command::new("python3").arg("--version").output().is_err() {
@@ -52,7 +52,7 @@ fn the_gradescope_zip_works_in_its_layout() {
         let results = fs::read(layout.join("results/results.json")).expect("results whatever happens");
         (run, serde_json::from_slice::<serde_json::Value>(&results).expect("JSON"))
     };
-    // `unzip` of Python keeps no permission bits; Gradescope does.
+    // Python's `unzip` drops permission bits; Gradescope keeps them.
     for program in ["fosssim-oracle", "grade"] {
         executable(&layout.join("source").join(program));
     }
@@ -194,7 +194,7 @@ fn the_action_for_github_writes_summary_report_and_points() {
         assert_eq!(run.out().contains("::error"), code == 1, "annotations: {}", run.shown());
         assert!(!workspace.read("summary").is_empty() && workspace.exists("fosssim-grades/report.html"));
     }
-    // The script that the action runs is there, and its inputs are those that the script reads.
+    // The script of the action exists, and reads exactly the action's inputs.
     let action = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("action.yml")).expect("the action");
     for name in ["integrations/github/grade", "FOSSSIM_SUBMISSION", "FOSSSIM_SUITE", "FOSSSIM_OUTPUT"] {
         assert!(action.contains(name), "{name}");

@@ -1,4 +1,4 @@
-//! Submissions that are no program, not yet a program, or somebody else's.
+//! Submissions that are not programs, not yet programs, or other people's programs.
 use super::{SUITE, rows, workspace};
 use crate::workspace::submission;
 use fosssim_testing::{Need, skip};
@@ -43,7 +43,7 @@ fn what_can_not_be_run_is_explained() {
         assert_eq!(run.code, Some(2), "{}", run.shown());
         assert!(run.err().contains(words), "{}", run.shown());
     }
-    // A class that a shell's pattern names: one empty folder does not stop the others.
+    // The class is named by a shell's pattern: one empty folder does not stop the others.
     workspace.write("of-ann/FOSSSim", b"MZ");
     let class = workspace.run(["grade", "of-ann", "empty", "--suite", "suite.toml", "--output", "of-two", "--fresh"]);
     assert!(class.out().contains("the upload has no program called FOSSSim; it is empty"), "{}", class.shown());
@@ -91,7 +91,7 @@ fn links_that_leave_a_submission_are_not_followed() {
     );
 
     if Path::new("/bin/sh").exists() {
-        // A build that leaves a link to somebody else's program has made none.
+        // A build that leaves a link to another student's program has built no program.
         let build = "[build]\ncommand = [\"sh\", \"build.sh\"]\nprogram = \"out/FOSSSim\"\n[[group]]";
         workspace.write("build.toml", SUITE.replacen("[[group]]", build, 1));
         workspace.write("secret/FOSSSim", submission("right"));

@@ -11,7 +11,7 @@ use fosssim_oracle::{
 use proptest::prelude::*;
 use std::cell::Cell;
 
-/// Sum of mass times vector, and the sum of the moduli, which rounding goes by.
+/// Returns the sum of mass times vector, and the sum of the moduli, which determines the rounding errors.
 fn weighted(scene: &Scene, vector: impl Fn(usize) -> Vec2) -> (Vec2, f64) {
     let mut sum = (Vec2::zeros(), 0.0);
     for (index, particle) in scene.particles.iter().enumerate() {
@@ -21,7 +21,7 @@ fn weighted(scene: &Scene, vector: impl Fn(usize) -> Vec2) -> (Vec2, f64) {
     sum
 }
 
-/// The state after the impulses, and how many there were.
+/// The state after the impulses, and the number of impulses.
 #[derive(Default)]
 struct AfterImpulses {
     state: State,
@@ -51,7 +51,8 @@ fn impulses_conserve_momentum() {
             let (end, size) = weighted(&scene, |index| vector_at(&seen.state.velocities, index));
             let room = 1e-14 * (size + old_size) * f64::from(seen.impulses + 1);
             prop_assert!(length(end - start) <= room, "{start:?} {end:?}");
-            // Positions change by the step size times the change of velocity, so the center of mass goes straight on.
+            // Positions change by the step size times the change of velocity, so the center of mass continues in a
+            // straight line.
             let way = |index| vector_at(&seen.state.positions, index) - vector_at(&before.positions, index);
             let (moved, _) = weighted(&scene, way);
             prop_assert!(length(moved - start * TIME_STEP) <= room * 100.0, "{moved:?}");
@@ -61,7 +62,8 @@ fn impulses_conserve_momentum() {
     }
 }
 
-/// One disc and one other body, which meet more often than not. What is fixed stands still: moving, it would do work.
+/// Returns scenes with one disc and one other body, which usually meet. Fixed bodies do not move, because they would do
+/// work.
 fn one_contact() -> impl Strategy<Value = Scene> {
     let place = || (-1.0..1.0, -1.0..1.0);
     let mass = || 0.25..4.0_f64;
@@ -95,7 +97,7 @@ fn one_contact() -> impl Strategy<Value = Scene> {
         })
 }
 
-/// Kinetic energy.
+/// Returns the kinetic energy.
 fn energy(scene: &Scene, state: &State) -> f64 {
     let energy = |(index, particle): (usize, &Particle)| {
         let v = vector_at(&state.velocities, index);
@@ -128,7 +130,7 @@ fn one_impulse_never_adds_energy() {
     assert!(hits.get().iter().all(|&count| count > 100) && kept.get() > 100, "{hits:?} {kept:?}");
 }
 
-/// The positions that each pass of the geometric part saw, and the zones moved between them.
+/// The positions in each pass of the geometric part, and the zones that moved between them.
 #[derive(Default)]
 struct Geometric {
     start: Vec<f64>,
@@ -206,7 +208,7 @@ fn zones_only_grow_and_at_most_twice_as_often_as_there_are_particles() {
     let most = Cell::new(0);
     search(3000, &crowds_without_impulses(), |scene| {
         let rounds = geometric(&scene).zones;
-        // The first list is there before the loop, and the last one equals the one before.
+        // The first list exists before the loop, and the last one equals the one before it.
         let growths = rounds.len() - 2;
         most.set(most.get().max(growths));
         prop_assert!(growths <= 2 * scene.particles.len());

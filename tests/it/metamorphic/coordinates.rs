@@ -1,8 +1,8 @@
-//! Other coordinates, other lengths and other names change nothing but the names.
+//! Other coordinates, lengths and names change only the names.
 //!
-//! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits; so does a
-//! power of two as unit of length, unless an absolute constant bites. Elsewhere round-off differs, and a step is
-//! compared from the same state, where no decision hangs on round-off.
+//! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits. So does a
+//! power of two as the unit of length, unless an absolute constant matters. Other maps change the round-off, so each
+//! step is compared from the same state, if no decision depends on round-off.
 use super::{
     built_in,
     crowd::{Wanted, crowd, hybrid},
@@ -51,7 +51,7 @@ impl Observer for Story {
 }
 
 impl Story {
-    /// The story as it looks through the map.
+    /// Returns the results as the map changes them.
     fn mapped(&self, map: &Map) -> Self {
         let square = map.factor * map.factor;
         let detection = |(pair, polynomials, hit): &Heard| {
@@ -73,7 +73,7 @@ impl Story {
         }
     }
 
-    /// Whether the other story has dropped other coefficients as too small.
+    /// Returns whether the other results have dropped other coefficients as too small.
     fn drops_others(&self, other: &Self) -> bool {
         self.detections.iter().zip(&other.detections).any(|(one, two)| {
             one.1.iter().zip(&two.1).any(|(one, two)| one.coefficients().len() != two.coefficients().len())
@@ -81,8 +81,8 @@ impl Story {
     }
 }
 
-/// Simulates the scene and its image side by side and says how many steps were the same, and what ended it: `None` if
-/// nothing did, else whether a coefficient was dropped on one side only.
+/// Simulates the scene and its image side by side. Returns how many steps were the same, and what ended the comparison:
+/// `None` if nothing did, otherwise whether a coefficient was dropped on one side only.
 fn same_steps(scene: &Scene, map: &Map) -> (u32, Option<bool>) {
     let mut one = Simulation::new(scene, RootSearch::OnDemand);
     let mut two = Simulation::new(&map.scene(scene), RootSearch::OnDemand);
@@ -97,17 +97,20 @@ fn same_steps(scene: &Scene, map: &Map) -> (u32, Option<bool>) {
     (scene.step_count(), None)
 }
 
-/// The linear solver pivots by rows and columns, which a turn exchanges.
+/// Returns whether the integrator is explicit. The linear solver chooses pivots by rows and columns, which a turn
+/// exchanges.
 fn is_explicit(scene: &Scene) -> bool {
     !matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler)
 }
 
-/// The contest's penalty force is summed in the order of a sweep along x, which a turn changes.
+/// Returns whether forces are summed along x. The contest's penalty force is summed in the order of a sweep along x,
+/// which a turn changes.
 fn sums_along_x(scene: &Scene) -> bool {
     matches!(scene.collision, Collision::Penalty { detection: CollisionDetection::Contest, .. })
 }
 
-/// The contest's boxes turn with no body: of bodies whose layers alone are near, they hold other ones then.
+/// Returns whether the scene has layers in boxes. The contest's boxes do not turn with the bodies, so they contain
+/// other bodies whose layers alone are near.
 fn has_layers_in_boxes(scene: &Scene) -> bool {
     sums_along_x(scene) && matches!(scene.collision, Collision::Penalty { thickness, .. } if thickness > 0.0)
 }
@@ -127,7 +130,7 @@ fn quarter_turns_and_mirrors_change_no_bit() {
     assert!(different.is_empty(), "{different:#?}");
 }
 
-/// Scenes of creeping bodies, and of edges in rigid zones.
+/// Scenes of slow bodies, and of edges in rigid zones.
 const ABOUT_THE_BOUND: [&str; 5] = [
     "barely-closing",
     "impact-exactly-past-step-end",
@@ -136,7 +139,7 @@ const ABOUT_THE_BOUND: [&str; 5] = [
     "funnel-of-fractional-masses",
 ];
 
-/// Newton's method stops at an absolute bound, and coefficients are dropped at one.
+/// Newton's method stops at an absolute bound, and coefficients are dropped at an absolute bound.
 #[test]
 fn powers_of_two_as_unit_of_length_change_no_bit() {
     let cases: Vec<(String, (u32, Option<bool>), u32)> = built_in()
@@ -151,15 +154,15 @@ fn powers_of_two_as_unit_of_length_change_no_bit() {
         .collect();
     let unexplained: Vec<&String> = cases.iter().filter(|case| case.1.1 == Some(false)).map(|case| &case.0).collect();
     assert!(unexplained.is_empty(), "{unexplained:#?}");
-    // Made so that coefficients lie about the absolute bound below which the course's library drops them.
+    // In these scenes, coefficients are near the absolute bound below which the course's library drops them.
     let is_about_the_bound = |name: &str| ABOUT_THE_BOUND.iter().any(|scene| name.contains(scene));
     let others = cases.iter().filter(|case| !is_about_the_bound(&case.0));
     let (whole, all) = (others.clone().filter(|case| case.1.0 == case.2).count(), others.count());
     assert!(whole * 20 > all * 17, "{whole} of {all} scenes stay the same to their end");
 }
 
-/// Hears whether a decision hangs on round-off: on the coefficients by a few thousand roundings of the greatest, or on
-/// whether one is dropped.
+/// Checks whether a decision depends on round-off: on a change of the coefficients by a few thousand rounding errors of
+/// the largest, or on whether a coefficient is dropped.
 #[derive(Default)]
 struct Doubt {
     any: bool,
@@ -173,7 +176,7 @@ impl Observer for Doubt {
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         if let Decision::Hit { normal, .. } = detection.decision {
             self.hits += 1;
-            // Without a direction the response is no number (collisions.md 7).
+            // Without a direction, the response is not a number (collisions.md 7).
             self.any |= !(length(normal) > 1e-9);
         }
         self.any |= is_doubtful(detection.polynomials);
@@ -190,7 +193,7 @@ fn is_doubtful(polynomials: &[Polynomial]) -> bool {
         .collect();
     let slices: Vec<&[BoundedValue]> = lists.iter().map(|list| &list[..]).collect();
     let certified = decide(&slices, 4096.0);
-    // The time of a contact that hardly touches moves by the root of a rounding.
+    // The time of a grazing contact changes by the square root of a rounding error.
     let is_loose = certified.time.is_some_and(|[from, to]| to - from > 1e-9);
     let is_alone = |list: &Vec<BoundedValue>| list.len() < 2 || list[1..].iter().all(|c| c.value == 0.0);
     certified.certainty == HitCertainty::Borderline
@@ -229,8 +232,8 @@ const REWRITINGS: [Rewriting; 5] = [
 ];
 
 /// Compares every step of the scene with that of the rewritten one, both from the same state and with the right
-/// approach; counts the steps compared. In one pass of `continuous-time` the order of the particles matters, and
-/// `simple` decides without polynomials, so that doubts are not noticed.
+/// approach polynomial. Returns the number of compared steps. In one pass of `continuous-time` the order of the
+/// particles matters, and `simple` decides without polynomials, so doubtful decisions are not noticed there.
 fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
     let is_ordered = matches!(scene.collision, Collision::ContinuousTime { .. });
     if is_ordered && rewriting.name.starts_with("particles") || matches!(scene.collision, Collision::Simple { .. }) {

@@ -5,10 +5,10 @@ use fosssim_oracle::{
 };
 use proptest::{collection::vec, prelude::*};
 
-/// Step size of all random scenes, in seconds.
+/// The step size of all random scenes, in seconds.
 pub const TIME_STEP: f64 = 0.25;
 
-/// Which scenes are wanted.
+/// The properties of the wanted scenes.
 #[derive(Debug, Clone, Copy)]
 pub struct Wanted {
     /// Collision handling.
@@ -17,16 +17,16 @@ pub struct Wanted {
     pub fixed: bool,
     /// Whether there may be half-planes.
     pub half_planes: bool,
-    /// Number of steps.
+    /// The number of steps.
     pub steps: u32,
 }
 
-/// Hybrid handling without a penalty force.
+/// Returns hybrid handling without a penalty force.
 pub const fn hybrid(restitution: f64, max_iterations: i32) -> Collision {
     Collision::Hybrid { restitution, max_iterations, stiffness: 0.0, thickness: 0.0 }
 }
 
-/// A scene without forces, with explicit Euler: everything goes straight on until it meets something.
+/// Returns a scene without forces, with explicit Euler: all bodies move straight until they meet.
 pub fn scene(steps: u32, collision: Collision, particles: Vec<Particle>) -> Scene {
     Scene {
         duration: f64::from(steps) * TIME_STEP,
@@ -42,7 +42,8 @@ pub fn scene(steps: u32, collision: Collision, particles: Vec<Particle>) -> Scen
     }
 }
 
-/// A particle within a cell of the plane whose corner is given later; it goes up to a cell's width in a step.
+/// Returns a particle in a cell of the plane whose corner is set later. It moves by up to the width of a cell in a
+/// step.
 fn particle(fixed: bool) -> impl Strategy<Value = Particle> {
     let place = (-0.5..0.5, -0.5..0.5);
     let velocity = (-8.0..8.0, -8.0..8.0);
@@ -58,7 +59,7 @@ fn particle(fixed: bool) -> impl Strategy<Value = Particle> {
     )
 }
 
-/// A half-plane somewhere about the particles.
+/// Returns a half-plane near the particles.
 fn half_plane() -> impl Strategy<Value = HalfPlane> {
     let part = || -2.0..6.0;
     ((part(), part()), (0.0..6.3), 0.3..4.0).prop_map(|((x, y), angle, length): ((f64, f64), f64, f64)| HalfPlane {
@@ -67,7 +68,7 @@ fn half_plane() -> impl Strategy<Value = HalfPlane> {
     })
 }
 
-/// Three to seven particles in the cells of a square, up to two edges between neighbors.
+/// Returns three to seven particles in the cells of a square, with up to two edges between neighbors.
 pub fn crowd(wanted: Wanted) -> impl Strategy<Value = Scene> {
     let planes = if wanted.half_planes { 0..2_usize } else { 0..1 };
     (vec(particle(wanted.fixed), 3..8), 0..3_usize, 0.05..0.2, vec(half_plane(), planes)).prop_map(

@@ -15,24 +15,24 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// How the decisions of a scene compare.
+/// The counts of how the decisions of a scene compare.
 #[derive(Debug, Default, Clone)]
 struct Tally {
     /// The decisions are certainly the same.
     same: u64,
     /// The decisions depend on round-off.
     borderline: u64,
-    /// Another answer because `c t^m` counts as nowhere positive in the original (root-finder.md 17.1).
+    /// The answers differ because `c t^m` counts as nowhere positive in the original (root-finder.md 17.1).
     alone: u64,
-    /// Decisions for which integers were asked.
+    /// The number of decisions that were computed with integers.
     exact: u64,
-    /// Another answer that nothing explains.
+    /// Answers that differ without an explanation.
     unexplained: Vec<String>,
-    /// The certified and the exact decision differ.
+    /// Cases in which the certified and the exact decision differ.
     contradictions: Vec<String>,
 }
 
-/// A polynomial of one term with a power of t.
+/// Returns whether the polynomial is one term with a power of t.
 fn is_alone(polynomial: &Polynomial) -> bool {
     let list = polynomial.coefficients();
     list.len() > 1 && list[1..].iter().all(|&c| c == 0.0)
@@ -53,7 +53,7 @@ impl Observer for Tally {
             .collect();
         let slices: Vec<&[BoundedValue]> = lists.iter().map(|list| &list[..]).collect();
         let certainty = decide(&slices, FAIR_UNITS).certainty;
-        // Integers take long; what is near, what hits and a few others are enough.
+        // Integers take long, so only near cases, hits and a few others are computed.
         let number = self.same + self.borderline;
         if is_hit || certainty != HitCertainty::Misses || number.is_multiple_of(64) {
             self.exact += 1;

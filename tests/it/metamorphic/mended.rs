@@ -1,6 +1,7 @@
 //! The simulator with the mathematically right approach polynomial of a particle and an edge.
 //!
-//! The course's formula has a wrong letter (numerics.md 1.1), so what should hold of collisions does not hold of it.
+//! The course's formula has a wrong letter (numerics.md 1.1), so it does not have the expected properties of
+//! collisions.
 use fosssim_oracle::{
     num::{
         polynomial::Polynomial,
@@ -11,7 +12,7 @@ use fosssim_oracle::{
 };
 
 /// The motion of a particle and an edge within the step, as three quadratics (numerics.md 1.2), lowest power first: the
-/// cross product of the edge with the way to the particle, the edge's squared length, and alpha times that.
+/// cross product of the edge with the vector to the particle, the edge's squared length, and alpha times this square.
 #[derive(Debug, Clone, Copy)]
 pub struct Quadratics {
     /// `e x w`, positive to the left of the edge.
@@ -23,7 +24,7 @@ pub struct Quadratics {
 }
 
 impl Quadratics {
-    /// Of particle `particle` and the edge between `ends`.
+    /// Returns the quadratics of `particle` and the edge between `ends`.
     pub fn of(q_start: &[f64], q_end: &[f64], particle: usize, ends: [usize; 2]) -> Self {
         let relative = |index, to| {
             let start = vector_at(q_start, index) - vector_at(q_start, to);
@@ -38,7 +39,7 @@ impl Quadratics {
         Self { cross: product(&cross, e, w), squared: product(&dot, e, e), along: product(&dot, w, e) }
     }
 
-    /// The right approach, highest power first: `-q (2 q' g - q g') / 2`, which has degree five.
+    /// Returns the right approach, highest power first: `-q (2 q' g - q g') / 2`, which has degree five.
     pub fn approach(&self) -> [f64; 6] {
         let (q, g) = (self.cross, self.squared);
         let mut inner = [0.0; 4];
@@ -61,17 +62,17 @@ impl Quadratics {
         product
     }
 
-    /// The value of one of the quadratics.
+    /// Returns the value of one of the quadratics.
     pub fn value(quadratic: [f64; 3], time: f64) -> f64 {
         quadratic[0] + time * (quadratic[1] + time * quadratic[2])
     }
 }
 
-/// An observer that puts the right approach in the course's place; `inner` hears the detections.
+/// An observer that replaces the course's approach polynomial by the right one; `inner` receives the detections.
 pub struct Mended<'s, O> {
     /// The scene, for the ends of its edges.
     pub scene: &'s Scene,
-    /// The observer that hears the rest.
+    /// The observer that receives all other events.
     pub inner: O,
 }
 

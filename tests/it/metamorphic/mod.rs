@@ -1,6 +1,6 @@
-//! Properties that follow from the physics and the mathematics, whatever the original's numbers are (numerics.md 4):
-//! what is conserved, what a change of coordinates or of names changes, what an exact decision says, and that verdicts
-//! stay. All searches have fixed seeds.
+//! Properties that follow from physics and mathematics, independent of the original's numbers (numerics.md 4):
+//! conserved quantities, changes of coordinates or names, exact decisions, and constant verdicts. All searches have
+//! fixed seeds.
 mod conservation;
 mod coordinates;
 mod crowd;
@@ -25,7 +25,7 @@ fn built_in() -> Vec<(&'static str, Scene)> {
     library::names().map(|name| (name, scene(name))).collect()
 }
 
-/// Runs `test` on `cases` values; the same ones every time.
+/// Runs `test` on `cases` values, the same ones every time.
 fn search<S: Strategy>(cases: u32, values: &S, test: impl Fn(S::Value) -> TestCaseResult) {
     let config = ProptestConfig {
         cases,

@@ -1,4 +1,4 @@
-//! Changes of coordinates and of names, of scenes and of what is simulated.
+//! Changes of the coordinates and names of scenes and of simulation results.
 use fosssim_oracle::{
     num::vector::{Vec2, set_vector, vector_at},
     scene::{Collision, Edge, Force, HalfPlane, Particle, Scene},
@@ -8,9 +8,9 @@ use fosssim_oracle::{
 /// A map of the plane: a matrix that turns or mirrors, a factor for all lengths, and a shift.
 #[derive(Debug, Clone, Copy)]
 pub struct Map {
-    /// Rows of the matrix; orthogonal.
+    /// The rows of the matrix, which is orthogonal.
     pub rows: [[f64; 2]; 2],
-    /// The factor of lengths.
+    /// The factor of all lengths.
     pub factor: f64,
     /// The shift, which is added last.
     pub shift: [f64; 2],
@@ -20,29 +20,29 @@ impl Map {
     /// The map that changes nothing.
     pub const NONE: Self = Self { rows: [[1.0, 0.0], [0.0, 1.0]], factor: 1.0, shift: [0.0; 2] };
 
-    /// Turns by `angle`, counterclockwise, in radians.
+    /// Returns the turn by `angle`, counterclockwise, in radians.
     pub fn turn(angle: f64) -> Self {
         let (s, c) = angle.sin_cos();
         Self { rows: [[c, -s], [s, c]], ..Self::NONE }
     }
 
-    /// A direction, of any length, which keeps it.
+    /// Returns the image of a direction of any length, which stays the same.
     pub fn direction(&self, v: Vec2) -> Vec2 {
         let [a, b] = self.rows;
         Vec2::new(a[0] * v.x + a[1] * v.y, b[0] * v.x + b[1] * v.y)
     }
 
-    /// A displacement, velocity or acceleration.
+    /// Returns the image of a displacement, velocity or acceleration.
     pub fn vector(&self, v: Vec2) -> Vec2 {
         self.direction(v) * self.factor
     }
 
-    /// A point.
+    /// Returns the image of a point.
     pub fn point(&self, p: Vec2) -> Vec2 {
         self.vector(p) + Vec2::new(self.shift[0], self.shift[1])
     }
 
-    /// -1 for a map that mirrors, else 1.
+    /// Returns -1 for a map that mirrors, otherwise 1.
     fn handedness(&self) -> f64 {
         let [a, b] = self.rows;
         if a[0] * b[1] < a[1] * b[0] { -1.0 } else { 1.0 }
@@ -67,7 +67,7 @@ impl Map {
         }
     }
 
-    /// The scene as it looks through the map.
+    /// Returns the image of the scene.
     pub fn scene(&self, scene: &Scene) -> Scene {
         let k = self.factor;
         let particle = |particle: &Particle| Particle {
@@ -97,7 +97,7 @@ impl Map {
         }
     }
 
-    /// The state as it looks through the map.
+    /// Returns the image of the state.
     pub fn state(&self, state: &State) -> State {
         let mut mapped = state.clone();
         for index in 0..state.positions.len() / 2 {
@@ -108,13 +108,13 @@ impl Map {
     }
 }
 
-/// The scene with every edge's ends exchanged.
+/// Returns the scene with the ends of every edge exchanged.
 pub fn with_ends_exchanged(scene: &Scene) -> Scene {
     let edges = scene.edges.iter().map(|edge| Edge { first: edge.second, second: edge.first, ..*edge }).collect();
     Scene { edges, ..scene.clone() }
 }
 
-/// The scene with its particles in the opposite order.
+/// Returns the scene with its particles in the opposite order.
 pub fn with_particles_reversed(scene: &Scene) -> Scene {
     let new = |old: usize| scene.particles.len() - 1 - old;
     let force = |force: &Force| match *force {
@@ -138,7 +138,7 @@ pub fn with_particles_reversed(scene: &Scene) -> Scene {
     }
 }
 
-/// The state of [`with_particles_reversed`].
+/// Returns the state of [`with_particles_reversed`].
 pub fn reversed(state: &State) -> State {
     let turned = |array: &[f64]| array.chunks(2).rev().flatten().copied().collect();
     State { positions: turned(&state.positions), velocities: turned(&state.velocities) }

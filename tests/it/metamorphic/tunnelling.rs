@@ -13,7 +13,7 @@ use fosssim_oracle::{
 use proptest::prelude::*;
 use std::cell::Cell;
 
-/// A particle that goes from one place to another in the step; coordinates in [-3, 3].
+/// Returns a particle that moves from one place to another in the step, with coordinates in [-3, 3].
 fn traveller(radius: f64) -> impl Strategy<Value = Particle> {
     let part = || -3.0..3.0;
     ((part(), part()), (part(), part()), 0.25..4.0).prop_map(move |((x, y), (to_x, to_y), mass): (_, (f64, f64), _)| {
@@ -25,7 +25,7 @@ fn traveller(radius: f64) -> impl Strategy<Value = Particle> {
 
 const ELASTIC: Collision = Collision::ContinuousTime { restitution: 1.0 };
 
-/// The end positions of a step.
+/// Returns the positions at the end of a step.
 fn end_of(scene: &Scene) -> Vec<f64> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     simulation.step(&mut ()).expect("an ordinary step");
@@ -44,8 +44,8 @@ fn discs_do_not_pass_through_one_another() {
             return Ok(());
         }
         met.set(met.get() + 1);
-        // They leave along the normal at contact, on whose sides they were at the start: the way from start to end
-        // nears no further than to contact.
+        // The bodies separate along the normal at contact, and were on the same sides of it at the start: on the way
+        // from start to end they come no nearer than at contact.
         let end = end_of(&scene);
         let new_way = vector_at(&end, 1) - vector_at(&end, 0) - apart;
         prop_assert!(length(new_way) > 0.0 && length(new_way - way) > 1e-9, "no response");
@@ -57,7 +57,7 @@ fn discs_do_not_pass_through_one_another() {
     assert!(met.get() > 150, "{} met", met.get());
 }
 
-/// When a point that starts at `apart` and goes `way` comes as near as `distance` to the origin.
+/// Returns when a point that starts at `apart` and moves by `way` comes as near as `distance` to the origin.
 fn first_touch(apart: Vec2, way: Vec2, distance: f64) -> f64 {
     let (a, b, c) = (way.dot(&way), apart.dot(&way), apart.dot(&apart) - distance * distance);
     (-b - (b * b - a * c).sqrt()) / a
@@ -84,7 +84,7 @@ fn discs_do_not_pass_through_half_planes() {
     assert!(crossed.get() > 200, "{} crossed", crossed.get());
 }
 
-/// Hears of disc and edge where the disc's center changes sides between the edge's ends.
+/// Receives the detections of disc and edge in which the disc's center changes sides between the edge's ends.
 #[derive(Default)]
 struct Crossings {
     seen: u32,
@@ -103,8 +103,8 @@ impl Observer for Crossings {
     }
 }
 
-/// Whether the center of particle 0 goes from one side of the edge between 1 and 2 to the other, once, clearly between
-/// its ends.
+/// Returns whether the center of particle 0 moves from one side of the edge between 1 and 2 to the other, once, clearly
+/// between its ends.
 fn crosses(q_start: &[f64], q_end: &[f64]) -> bool {
     let quadratics = Quadratics::of(q_start, q_end, 0, [1, 2]);
     let side = |time| Quadratics::value(quadratics.cross, time);
@@ -121,7 +121,7 @@ fn crosses(q_start: &[f64], q_end: &[f64]) -> bool {
     squared > 1e-3 && (0.001..0.999).contains(&alpha)
 }
 
-/// A disc and an edge whose ends are too small to be hit instead.
+/// Returns a disc and an edge whose ends are too small to be hit instead.
 fn disc_and_edge() -> impl Strategy<Value = Scene> {
     (traveller(0.1), traveller(0.0), traveller(0.0)).prop_map(|(disc, one, two)| Scene {
         edges: vec![Edge { first: 1, second: 2, radius: 0.1 }],
@@ -145,11 +145,11 @@ fn discs_do_not_pass_through_edges_unseen() {
         Ok(())
     });
     assert!(right.get()[0] > 300, "{:?}", right.get());
-    // The course's formula has a wrong letter, which lets some through: the reason for two rule books.
+    // The course's formula has a wrong letter, so some discs pass through. This is the reason for two rule books.
     assert!(course.get()[1] > 0, "{:?}", course.get());
 }
 
-/// Hears how the only particle-edge pair ends.
+/// Records the decision about the only particle-edge pair.
 #[derive(Default)]
 struct Met(Option<bool>);
 
@@ -161,7 +161,7 @@ impl Observer for Met {
     }
 }
 
-/// Which end of an edge is the first one does not matter, but to the course's formula it does.
+/// The order of an edge's ends does not matter, except in the course's formula.
 #[test]
 fn the_direction_of_an_edge_matters_to_the_wrong_letter_only() {
     let (hits, course) = (Cell::new(0), Cell::new(0));

@@ -1,4 +1,4 @@
-//! The fair rules judge a program alike in whatever coordinates the scene is written.
+//! The verdicts of the fair rules do not depend on the coordinates of the scene.
 use super::{built_in, transform::Map};
 use fosssim_oracle::{
     judge::{
@@ -53,7 +53,7 @@ fn maps() -> [Map; 5] {
     ]
 }
 
-/// Whether the program's trace is accepted; a program that never ends is not.
+/// Returns whether the program's trace is accepted. A program that never ends is not accepted.
 fn is_accepted(scene: &Scene, id: Option<&str>) -> bool {
     let mistake = id.map(|id| student::find(id).expect("a row of the catalogue").mistake);
     let Ok(trace) = student::record_trace(scene, Student::new(mistake)) else { return false };

@@ -1,7 +1,7 @@
-//! Deaths together: programs die with their supervisor, supervisors with their grader.
+//! Processes that end together: programs end with their supervisor, and supervisors with their grader.
 use super::*;
 
-/// The process that runs exactly these words, and its parent.
+/// Returns the process that runs exactly these words, and its parent.
 pub fn process(words: &[&str]) -> Option<(i32, i32)> {
     let line: Vec<u8> = words.iter().flat_map(|word| [word.as_bytes(), b"\0"].concat()).collect();
     let pids =
@@ -13,7 +13,7 @@ pub fn process(words: &[&str]) -> Option<(i32, i32)> {
     Some((pid, parent))
 }
 
-/// Looks again and again until there is an answer; a test that gets none fails after half a minute.
+/// Repeats a check until there is an answer. A test without an answer fails after half a minute.
 pub fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
     let start = std::time::Instant::now();
     loop {
@@ -25,12 +25,12 @@ pub fn eventually<T>(mut look: impl FnMut() -> Option<T>) -> T {
     }
 }
 
-/// Whether a process runs: one that is dead has no program, though its parent may not have asked for its end yet.
+/// Returns whether a process runs. A dead process has no program, even if its parent has not reaped it yet.
 fn runs(pid: i32) -> bool {
     Path::new(&format!("/proc/{pid}/exe")).exists()
 }
 
-/// Kills a process, and waits until it is dead: until then others may go on with it.
+/// Kills a process, and waits until it is dead, because other processes may use it until then.
 pub fn kill(pid: i32) {
     assert!(std::process::Command::new("/bin/kill").args(["-KILL", &pid.to_string()]).status().unwrap().success());
     eventually(|| (!runs(pid)).then_some(()));
@@ -54,7 +54,7 @@ fn a_program_dies_with_its_grader() {
     let words = ["/bin/sleep", "98762"];
     let Some(bench) = Bench::new() else { return };
     if std::env::var_os(ROLE).is_some() {
-        // The grader that is going to be killed; it would wait for its wall limit.
+        // This grader is going to be killed. It would otherwise wait for its time limit.
         let _ = bench.backend.start(&bench.job(words[0], &words[1..])).unwrap().wait();
         return;
     }

@@ -1,7 +1,7 @@
-//! The needs of the course's programs from the system's libraries.
+//! The system libraries that the course's programs need.
 use super::*;
 
-/// Compiles a source that a bench holds; `None` if there is no such compiler or library.
+/// Compiles a source in the folder of a bench. Returns `None` if there is no such compiler or library.
 fn built(bench: &Bench, source: &str, words: &[&str]) -> Option<PathBuf> {
     let path = bench.folder.path().join("source.cpp");
     std::fs::write(&path, source).unwrap();
@@ -16,7 +16,7 @@ fn built(bench: &Bench, source: &str, words: &[&str]) -> Option<PathBuf> {
     }
 }
 
-/// Limits with which threads and sanitizers can do their work.
+/// Returns limits that are large enough for threads and sanitizers.
 fn roomy() -> Limits {
     Limits { memory: 512 << 20, processes: 40, cpu: Duration::from_secs(10), ..small() }
 }
@@ -49,7 +49,7 @@ int main() {
         sum += i;
     });
     for (auto &thread : threads) thread.join();
-    // To end a thread on request the C library loads another library.
+    // To cancel a thread, the C library loads another library.
     pthread_t waiting;
     pthread_create(&waiting, nullptr, sleeps, nullptr);
     pthread_cancel(waiting);
@@ -138,7 +138,7 @@ int main() {
     let Some(bench) = Bench::new() else { return };
     let Some(program) = built(&bench, LIBRARY, &["-pthread"]) else { return };
     assert_eq!(said(&bench, &program), "\u{e4}\n");
-    // The C library's own data, if it is there.
+    // This is the C library's own data, if it exists.
     if Path::new("/usr/lib/locale/C.utf8").exists() {
         let source = "#include <locale>\nint main() { std::locale::global(std::locale(\"C.UTF-8\")); }";
         let Some(program) = built(&bench, source, &[]) else { return };
@@ -146,7 +146,7 @@ int main() {
     }
 }
 
-/// Waits with limits of time for what processes could share, and the counters of the program itself.
+/// Tests timed waits for objects that processes could share, and the program's own counters.
 const WAITS: &str = r#"
 #include <cerrno>
 #include <cstdio>
@@ -263,7 +263,7 @@ fn a_program_reads_the_systems_libraries_and_nothing_else_of_the_system() {
     }
 }
 
-/// Lays a file system in memory over the folder of local libraries, with a module of ours in it, and grades a script.
+/// Mounts a file system in memory, with a module of ours, over the folder of local libraries, and grades a script.
 #[test]
 fn our_module_for_python_is_no_library_of_a_submission() {
     let Some(_) = backend() else { return };

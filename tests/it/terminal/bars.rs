@@ -1,4 +1,4 @@
-//! The terminal while a command works, and what is left there afterwards.
+//! The terminal while a command runs, and the text that remains on it afterwards.
 use crate::workspace::{DRIFT, Workspace};
 use fosssim_testing::{Need, skip};
 use std::{
@@ -11,7 +11,7 @@ use std::{
     process::Stdio,
 };
 
-/// The two ends of a terminal.
+/// Returns the two ends of a terminal.
 pub(super) fn terminal() -> (File, OwnedFd) {
     let (mut main, mut side) = (0, 0);
     let size = libc::winsize { ws_row: 24, ws_col: 80, ws_xpixel: 0, ws_ypixel: 0 };
@@ -23,14 +23,13 @@ pub(super) fn terminal() -> (File, OwnedFd) {
     }
 }
 
-/// Interrupts the program as soon as these words stand on the terminal of its standard error; what was written there in
-/// all, and the exit code.
+/// Interrupts the program when these words appear on its standard error. Returns the complete output and the exit code.
 fn interrupted(workspace: &Workspace, words: &[&str], at: &str) -> (String, Option<i32>) {
     let (mut main, side) = terminal();
     let mut command = workspace.command();
     command.args(words).env("TERM", "xterm").stdout(Stdio::null()).stderr(Stdio::from(side));
     let mut child = command.spawn().expect("the program");
-    // Only its copies keep the other end open.
+    // Now only the copies keep the other end open.
     drop(command);
     let (mut seen, mut buffer, mut sent) = (Vec::new(), [0; 4096], false);
     while let Ok(count @ 1..) = main.read(&mut buffer) {
@@ -45,7 +44,7 @@ fn interrupted(workspace: &Workspace, words: &[&str], at: &str) -> (String, Opti
     (String::from_utf8_lossy(&seen).into_owned(), code)
 }
 
-/// The text that is still to be seen behind the last erasure.
+/// Returns the text that is still visible after the last erasure.
 fn left(seen: &str) -> &str {
     seen.rsplit("\u{1b}[2K").next().unwrap_or_default()
 }
@@ -53,7 +52,7 @@ fn left(seen: &str) -> &str {
 #[test]
 fn an_interrupt_leaves_no_bar_behind() {
     let workspace = Workspace::new();
-    // The number of steps is practically endless.
+    // The number of steps is so large that the program does not end.
     workspace.write("scene.xml", DRIFT.replace("time=\"1\"", "time=\"100000000\""));
     let (seen, code) = interrupted(&workspace, &["simulate", "scene.xml"], " left");
     assert_eq!((code, left(&seen).trim()), (Some(130), ""), "{seen:?}");

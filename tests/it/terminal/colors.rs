@@ -20,7 +20,7 @@ fn words_win_over_variables_and_variables_over_the_terminal() {
     assert!(with(&["--color", "always"], &[("NO_COLOR", "1")]));
     assert!(!with(&["--color", "never"], &[("CLICOLOR_FORCE", "1")]));
     assert!(!with(&["--color", "auto"], &[]));
-    // Before the command it means the same.
+    // The option has the same meaning before the command.
     assert!(is_colored(&workspace, &[&["--color", "always"][..], &check].concat(), &[]));
 }
 

@@ -1,11 +1,11 @@
-//! Completion scripts and manual pages, in the shells that they are for.
+//! Completion scripts and manual pages, tested in their shells.
 use crate::workspace::{Workspace, finish};
 use fosssim_testing::{Need, skip};
 use std::process::Command;
 
-/// The offers of bash for the last of these words, by the script as it is printed.
+/// Returns bash's completions of the last of these words, by the printed script.
 fn offered(workspace: &Workspace, words: &[&str]) -> Vec<String> {
-    // Bash splits words at colons, which are words of their own.
+    // Bash splits words at colons, and the colons are separate words.
     let split = words.join("\n").replace(':', "\n:\n");
     let split = if split.ends_with(":\n") { split.trim_end() } else { &split };
     let words: Vec<&str> = split.split('\n').collect();
@@ -48,7 +48,7 @@ fn bash_completes_behind_a_command() {
     assert_eq!(offers(&["fosssim-oracle", "trace", "sh"]), ["show"]);
     assert_eq!(offers(&["fosssim-oracle", "trace", "show", "--st"]), ["--step"]);
     assert_eq!(offers(&["fosssim-oracle", "help", "trace", "in"]), ["info"]);
-    // Names of what comes with the program, next to files.
+    // The completions are the names of built-in scenes and suites, together with files.
     assert_eq!(offers(&["fosssim-oracle", "grade", "x", "--suite", "t1"]), ["t1m1", "t1m2", "t1m3"]);
     assert_eq!(offers(&["fosssim-oracle", "grade", "x", "--suite", "comp"]), ["completions.bash"]);
     assert_eq!(

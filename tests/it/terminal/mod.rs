@@ -1,4 +1,4 @@
-//! The terminal: what people type, see and complete.
+//! The terminal: typed words, output and completion.
 mod bars;
 mod colors;
 mod completion;

@@ -1,4 +1,4 @@
-//! `scene`: the embedded scenes in hand.
+//! `scene`: the embedded scenes.
 use crate::workspace::Workspace;
 use fosssim_oracle::suite::library;
 
@@ -19,8 +19,8 @@ fn every_scene_is_listed_with_a_line_about_it() {
     let of_assignments = ["t2m1/*", "t2m2/*", "t1m1/*", "t1m2/*", "t1m3/*", "t2m3@1/*", "t2m3@2/*"]
         .map(|folder| workspace.run(["scene", "list", "--quiet", folder]).out());
     assert!(of_assignments[0].contains("asset:SimpleTests/") && of_assignments[1].contains("asset:GeometricTests/"));
-    // Two scenes of continuous-time collisions are in no suite, and six are in the first versions of t1m2 and t1m3
-    // alone.
+    // Two scenes of continuous-time collisions are in no suite, and six are only in the first versions of t1m2 and
+    // t1m3.
     assert_eq!(of_assignments.concat().lines().count() + 8, library::all_names().count());
     let full = ["asset:t2m2/HolisticTests/balls-in-a-box"; 2];
     assert_eq!(workspace.run(["check", full[0], full[1]]).code, Some(0));

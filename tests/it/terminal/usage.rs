@@ -1,9 +1,10 @@
-//! Help, and what is said when the words are wrong.
+//! Help, and the messages about wrong arguments.
 use crate::workspace::{BOUNCE, DRIFT, Workspace};
 use fosssim_testing::{Need, skip};
 use std::{os::unix::fs::symlink, process::Command};
 
-/// Text below the options is wrapped by the help alone: a line ends early only where a paragraph or an example does.
+/// Only the help command wraps the text below the options: a line ends early only at the end of a paragraph or an
+/// example.
 #[test]
 fn help_is_wrapped_once() {
     let workspace = Workspace::new();
@@ -15,7 +16,7 @@ fn help_is_wrapped_once() {
             let [line, next] = pair else { continue };
             let flows = !line.is_empty() && !line.starts_with(' ') && !next.is_empty() && !next.starts_with(' ');
             let word = next.split(' ').next().unwrap_or_default();
-            // The next word had no room, or the next line begins a sentence of its own.
+            // The next word did not fit, or the next line begins a new sentence.
             let is_full = line.len() + 1 + word.len() > 100 || word.chars().all(|c| c.is_uppercase());
             assert!(!flows || is_full, "{command:?}: {line:?} is broken before {next:?}");
         }
@@ -36,7 +37,7 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
     workspace.write("trace.bin.zst", packed);
     let run = workspace.run(["check", "trace.bin.zst", "scene.xml"]);
     assert!(run.err().contains("SCENE comes first"), "{}", run.err());
-    // A file of text is read as a scene, however wrong.
+    // A text file is read as a scene, even if it is wrong.
     workspace.write("notes.txt", "no scene\n");
     assert!(!workspace.run(["check", "notes.txt", "trace.bin"]).err().contains("SCENE comes first"));
 }
@@ -49,7 +50,7 @@ fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
         assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
         assert!(run.err().contains("scene.xml is a scene, not a trace"), "{}", run.err());
     }
-    // Any other file of such a name is a trace, if a bad one.
+    // Any other file with such a name is read as a trace, even if it is damaged.
     workspace.write("odd.xml", "no scene");
     assert_eq!(workspace.run(["check", "scene.xml", "odd.xml"]).code, Some(1));
 }
@@ -194,7 +195,7 @@ fn whoever_writes_into_a_file_is_told_where() {
         assert!(quiet.err().is_empty() || command[0] == "suite", "{}", quiet.shown());
     }
     assert_eq!(workspace.read("course.toml"), workspace.run(["suite", "init"]).stdout);
-    // A suite that a teacher has changed is not replaced.
+    // A suite that a teacher has changed is not overwritten.
     std::fs::write(workspace.path("course.toml"), "# mine\n").expect("ours");
     let again = workspace.run(["suite", "init", "-o", "course.toml"]);
     assert!(again.code == Some(2) && again.err().contains("may contain your changes"), "{}", again.shown());

@@ -1,6 +1,7 @@
-//! No circle of files in any room: where a file uses what another defines, that one never comes to use the first, by
-//! whatever way. What is read are the paths in the sources; a name that a module only passes on counts for the file
-//! that defines it, and a file may use what the module above it defines, of which it is a part.
+//! The modules of a crate must not depend on each other in circles: if a file uses a definition of another file, the
+//! other one must not use the first, neither directly nor through other files. The check reads the paths in the
+//! sources. A name that a module only reexports counts for the file that defines it. A file may use the definitions of
+//! its parent module.
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
@@ -11,25 +12,25 @@ use crate::{
     tree::{files, name, text},
 };
 
-/// A module, as the names on the way to it.
+/// The names on the path to a module.
 type Module = Vec<String>;
 
-/// The facts about a file.
+/// The names that a file defines and uses.
 #[derive(Default)]
 struct File {
-    /// Names that `use` brings, each with the paths that it may stand for, and whether they are only passed on.
+    /// Names that `use` imports, each with its possible paths, and whether the file only reexports them.
     imports: BTreeMap<String, Vec<(Vec<String>, bool)>>,
-    /// Modules from which everything is brought.
+    /// Modules from which everything is imported.
     globs: Vec<Vec<String>>,
-    /// Names that are defined here.
+    /// The names that the file defines.
     items: BTreeSet<String>,
-    /// Paths in the code.
+    /// The paths in the code.
     paths: Vec<Vec<String>>,
-    /// Modules of tests, in files of their own.
+    /// Modules of tests that have their own files.
     tests: Vec<String>,
 }
 
-/// Names and marks of a text without comments, texts and characters; `::` is one mark.
+/// Returns the names and symbols of a text, without comments, strings and characters; `::` is one symbol.
 fn tokens(text: &str) -> Vec<String> {
     let bytes: Vec<char> = text.chars().collect();
     let (mut at, mut list) = (0, Vec::new());
@@ -77,7 +78,7 @@ fn tokens(text: &str) -> Vec<String> {
     list
 }
 
-/// Where the item that begins here ends: behind its braces, or its semicolon.
+/// Returns the end of the item that begins here: after its braces, or its semicolon.
 fn end_of_item(tokens: &[String], begin: usize) -> usize {
     let mut depth = 0;
     for (at, token) in tokens.iter().enumerate().skip(begin) {
@@ -96,7 +97,7 @@ fn end_of_item(tokens: &[String], begin: usize) -> usize {
     tokens.len()
 }
 
-/// The paths of a `use`, each with its name; `at` is behind its end afterwards.
+/// Returns the paths of a `use`, each with its name. Afterwards, `at` is the position after its end.
 fn paths_of_use(tokens: &[String], at: &mut usize, before: &[String], out: &mut Vec<(Vec<String>, String)>) {
     let (mut path, mut name) = (before.to_vec(), None);
     while let Some(token) = tokens.get(*at) {
@@ -146,7 +147,7 @@ fn read(text: &str) -> File {
             continue;
         }
         let token = tokens[at].as_str();
-        // `use<>` says what a type captures.
+        // `use<>` names the captured lifetimes of a type.
         if token == "use" && !is(at + 1, &["<"]) {
             let passes_on = at > 0 && (tokens[at - 1] == "pub" || tokens[at - 1] == ")");
             at += 1;
@@ -181,7 +182,7 @@ fn read(text: &str) -> File {
     file
 }
 
-/// The files of a room, by module.
+/// The files of a crate, by module.
 struct Room(BTreeMap<Module, File>);
 
 impl Room {
@@ -207,7 +208,7 @@ impl Room {
         Self(modules)
     }
 
-    /// The module whose file defines what a path names in another; none if that is in another crate.
+    /// Returns the module whose file defines the item of a path in another module, or `None` if it is in another crate.
     fn resolve(&self, module: &[String], path: &[String], depth: usize) -> Option<Module> {
         let (first, rest) = path.split_first()?;
         match first.as_str() {
@@ -253,7 +254,7 @@ impl Room {
         Some(file.globs.iter().find_map(defines).unwrap_or_else(|| module.to_vec()))
     }
 
-    /// Whose definitions each file uses.
+    /// Returns the modules whose definitions each file uses.
     fn uses(&self) -> BTreeMap<&Module, BTreeSet<Module>> {
         let of = |(module, file): (&'_ Module, &File)| -> BTreeSet<Module> {
             let imported = file.imports.values().flatten().filter(|(_, passes_on)| !passes_on).map(|(path, _)| path);
@@ -264,12 +265,13 @@ impl Room {
         self.0.iter().map(|entry| (entry.0, of(entry))).collect()
     }
 
-    /// Files that use one another.
+    /// Returns the files that use each other.
     fn circles(&self) -> BTreeSet<Vec<String>> {
         circles(&self.uses().into_iter().map(|(module, uses)| (module.join("/"), names(&uses))).collect())
     }
 
-    /// Folders and files right below the room's own that use one another: the names of modules of the first level.
+    /// Returns the top-level files and folders of the crate that use each other, as names of modules of the first
+    /// level.
     fn folder_circles(&self) -> BTreeSet<Vec<String>> {
         let mut folders: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
         let first = |module: &Module| module.first().cloned();
@@ -286,7 +288,7 @@ fn names(modules: &BTreeSet<Module>) -> BTreeSet<String> {
     modules.iter().map(|module| module.join("/")).collect()
 }
 
-/// Names that use one another, each circle as a sorted list.
+/// Returns the names that use each other; each circle is a sorted list.
 fn circles(uses: &BTreeMap<String, BTreeSet<String>>) -> BTreeSet<Vec<String>> {
     let reached = |from: &String| {
         let (mut open, mut reached) = (vec![from], BTreeSet::new());
@@ -313,7 +315,7 @@ fn imports_are_followed_to_the_file_that_defines_a_name() {
                 .collect(),
         )
     };
-    // Through a name that is passed on, through a group, and past texts, comments and tests.
+    // The circle goes through a reexported name and a group, and strings, comments and tests are skipped.
     let circles = room(&[
         ("", "mod a; mod b; pub use b::{B, other as Other};"),
         ("a/", "use super::{B, c::C as D}; pub struct A;"),
@@ -325,13 +327,13 @@ fn imports_are_followed_to_the_file_that_defines_a_name() {
         ),
     ]);
     assert_eq!(circles.circles(), BTreeSet::from([vec!["a".to_owned(), "b".to_owned()]]));
-    // A part may use its whole.
+    // A module may use its parent.
     let whole =
         room(&[("", "mod a;"), ("a/", "mod b; use b::B; pub struct A;"), ("a/b/", "use super::A; pub struct B;")]);
     assert!(whole.circles().is_empty());
 }
 
-/// Reads the sources of every package of the workspace, each with the name of its folder.
+/// Reads the sources of all packages of the workspace, each with the name of its folder.
 fn rooms() -> Vec<(String, Room)> {
     let folders = packages().into_iter().map(|package| package.sources()).filter(|folder| folder.is_dir());
     folders.map(|folder| (name(&folder).to_owned(), Room::read(&folder))).collect()

@@ -1,11 +1,12 @@
-//! The specification that the sources cite lies in `docs/spec`, and every section that is cited exists.
+//! The specification that the sources cite is in `docs/spec`, and every cited section exists.
 use crate::tree::{files, root, sources, text};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
 
-/// The sections of a document: `3` and `3.2` for headings, and `3.2` for the second numbered point of section 3.
+/// Returns the sections of a document: `3` and `3.2` for headings, and `3.2` for the second numbered point of section
+/// 3.
 fn sections(text: &str) -> BTreeSet<String> {
     let (mut sections, mut section) = (BTreeSet::new(), String::new());
     let number = |text: &str| -> String {
@@ -24,7 +25,7 @@ fn sections(text: &str) -> BTreeSet<String> {
             // Some points carry their section's number, others only their own.
             sections.insert(if point.contains('.') { point } else { format!("{section}.{point}") });
         } else if let Some(more) = line.trim_start().split("; ").find_map(|part| {
-            // Lists that go on within a line: "1. parse; 2. load".
+            // Some lists continue within a line: "1. parse; 2. load".
             part.strip_prefix(|c: char| c.is_ascii_digit()).filter(|rest| rest.starts_with(". ")).map(|_| part)
         }) {
             sections.insert(format!("{section}.{}", number(more)));
@@ -37,7 +38,7 @@ fn sections(text: &str) -> BTreeSet<String> {
 /// Returns the sections of the specification that a text cites, with their documents.
 fn citations(text: &str, documents: &BTreeMap<String, BTreeSet<String>>) -> Vec<(String, String)> {
     let mut found = Vec::new();
-    // A citation may be broken over two lines of a comment.
+    // A citation may be split over two lines of a comment.
     let text = text.replace("\n//! ", " ").replace("\n/// ", " ");
     let lower = text.to_lowercase();
     for document in documents.keys() {

@@ -1,9 +1,9 @@
-//! Files are opened in one way, by `crates/files`: without waiting, beneath their folder, with a limit. Code that opens
-//! one otherwise is listed here with the reason, and how often.
+//! All files are opened by `crates/files`: without waiting, inside their folder, and with a size limit. Code that opens
+//! files in another way is listed here with the number of calls and the reason.
 use crate::tree::{files, name, root, text};
 use std::collections::BTreeMap;
 
-/// Calls that open, make or list files on their own.
+/// Calls that open, create or list files directly.
 const WORDS: [&str; 10] = [
     "File::open(",
     "File::create(",
@@ -17,7 +17,7 @@ const WORDS: [&str; 10] = [
     "tempfile_in(",
 ];
 
-/// The rooms that follow this rule. The sandbox has its own ways, and tests of its own.
+/// The crates that follow this rule. The sandbox opens files in its own ways, and has its own tests.
 const ROOMS: [&str; 10] = [
     "src",
     "crates/evidence/src",
@@ -31,7 +31,7 @@ const ROOMS: [&str; 10] = [
     "crates/report/src",
 ];
 
-/// Where it is right all the same.
+/// The exceptions, with their reasons.
 const ALLOWED: [(&str, usize, &str); 11] = [
     ("crates/grading/src/key.rs", 1, "the grader's own program, in /proc"),
     ("crates/grading/src/scene_files.rs", 1, "lists a folder of scenes that somebody names; listing waits for nothing"),
@@ -62,7 +62,7 @@ fn files_are_opened_in_one_way() {
             let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
             let of_word = |line: &str, word: &str| {
                 let is_other = |at: usize| line[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
-                // `std::fs` and `fs` alone; `files` is the one way.
+                // Only `std::fs` and `fs` count; `files` is the allowed crate.
                 line.match_indices(word).filter(|(at, _)| !is_other(*at)).count()
             };
             let count: usize = code.map(|line| WORDS.iter().map(|word| of_word(line, word)).sum::<usize>()).sum();

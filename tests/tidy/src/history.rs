@@ -2,10 +2,10 @@
 use crate::tree::root;
 use std::process::Command;
 
-/// Longer subjects are cut by tools that list them.
+/// Tools cut longer subjects when they list them.
 const LONGEST_SUBJECT: usize = 72;
 
-/// The time from which on subjects follow this rule.
+/// The time from which subjects follow this rule.
 const SINCE: &str = "2026-11-26T22:00:00Z";
 
 /// Returns what is wrong with the subject of a commit.
@@ -28,7 +28,7 @@ fn faults_of_subjects_are_found() {
     assert!(fault(&format!("judge: {}", "a".repeat(70))).is_some());
 }
 
-/// A checkout without its history, as in a package, has nothing to check.
+/// A checkout without history, as in a package, has nothing to check.
 #[test]
 fn subjects_of_commits_name_a_scope_and_one_change() {
     let mut git = Command::new("git");

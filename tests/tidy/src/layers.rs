@@ -1,33 +1,34 @@
-//! The walls of the house, as ARCHITECTURE.md's map of rooms draws them. Between crates the compiler keeps them, as far
-//! as their manifests ask for no more than the map allows. Between the rooms of one crate the imports are read.
+//! The boundaries between the project's modules, as in the module table of ARCHITECTURE.md. Between crates the compiler
+//! enforces them, because the manifests list no more dependencies than the table allows. Between the modules of one
+//! crate this test reads the imports.
 use crate::{
     manifests::{Package, packages},
     tree::{files, name, root, text},
 };
 use std::path::PathBuf;
 
-/// A row of ARCHITECTURE.md's map: a room, its layer, and the folder of its crate.
+/// A row of the table in ARCHITECTURE.md: a module, its layer, and the folder of its crate.
 struct Room {
     layer: usize,
     name: String,
     folder: PathBuf,
 }
 
-/// Reads the map of rooms.
+/// Reads the table of modules.
 fn rooms() -> Vec<Room> {
     let page = text(&root().join("ARCHITECTURE.md"));
     let row = |line: &str| -> Option<Room> {
         let cells: Vec<&str> = line.split('|').map(|cell| cell.trim().trim_matches('`')).collect();
         let [_, layer, name, folder, ..] = cells[..] else { return None };
         let layer = layer.parse().ok()?;
-        // The program's own package and Python's are named by one cell.
+        // One cell names both the program's own package and Python's.
         let folder = if folder == "src" { root().to_owned() } else { root().join(folder) };
         Some(Room { layer, name: name.to_owned(), folder })
     };
     page.lines().filter_map(row).collect()
 }
 
-/// The first segments after every `crate::`, also those of a group `crate::{a::b, c}`.
+/// Returns the first segments after every `crate::`, also those of a group `crate::{a::b, c}`.
 fn imported_modules(text: &str) -> Vec<String> {
     let code: String = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect::<Vec<_>>().join("\n");
     let mut modules = Vec::new();
@@ -113,7 +114,7 @@ fn rooms_of_one_crate_import_only_from_lower_rooms() {
     assert!(wrong.is_empty(), "imports that point upwards:\n{}", wrong.join("\n"));
 }
 
-/// The rooms that judge and that write reports are good for machines without processes and files, such as a browser's.
+/// The modules that judge and write reports also work on machines without processes and files, such as browsers.
 #[test]
 fn browsers_and_reports_know_no_processes() {
     let packages = packages();

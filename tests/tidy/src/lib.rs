@@ -1,6 +1,6 @@
-//! The rules of the house, which no compiler holds: what uses what, what is cited, how long and wide sources are, how
-//! documents, the changelog and commits are written. It depends on no other package, so that it answers in seconds.
-//! Its lists come from the workspace's manifests and from ARCHITECTURE.md.
+//! The project's rules that the compiler does not check: dependencies between modules, citations, the length and width
+//! of sources, and the style of documents, the changelog and commits. This package depends on no other package, so that
+//! the checks take only seconds. It reads its lists from the workspace's manifests and from ARCHITECTURE.md.
 #![cfg(test)]
 #![forbid(unsafe_code)]
 

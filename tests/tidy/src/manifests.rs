@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// A package of the workspace.
 pub struct Package {
-    /// The name without `fosssim-`, such as `model`; the program's own is `oracle`.
+    /// The name without `fosssim-`, such as `model`; the name of the program's own package is `oracle`.
     pub name: String,
     /// The folder of the manifest.
     pub folder: PathBuf,
@@ -24,12 +24,12 @@ impl Package {
         Self { name, folder, manifest }
     }
 
-    /// Returns the folder of its sources.
+    /// Returns the folder of the package's sources.
     pub fn sources(&self) -> PathBuf {
         self.folder.join("src")
     }
 
-    /// Returns the entries of the tables whose names pass: name and value of each.
+    /// Returns the names and values of the entries of all tables whose names are wanted.
     fn entries(&self, is_wanted: impl Fn(&str) -> bool) -> Vec<(&str, &str)> {
         let mut is_inside = false;
         let mut found = Vec::new();
@@ -46,18 +46,18 @@ impl Package {
         found
     }
 
-    /// Returns the names of all packages that it asks for, for tests too.
+    /// Returns the names of all packages on which the package depends, including those for tests.
     pub fn dependencies(&self) -> Vec<&str> {
         let is_table = |table: &str| table.ends_with("dependencies") && !table.starts_with("workspace");
         self.entries(is_table).into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the names of the packages that its library or program is built with on every platform.
+    /// Returns the names of the packages with which the library or program is built on every platform.
     pub fn built_with(&self) -> Vec<&str> {
         self.entries(|table| table == "dependencies").into_iter().map(|(name, _)| name).collect()
     }
 
-    /// Returns the names of the packages that it asks for without a feature.
+    /// Returns the names of the dependencies that are not optional.
     fn required(&self) -> Vec<&str> {
         let is_table = |table: &str| table.ends_with("dependencies") && !table.starts_with("workspace");
         let all = self.entries(is_table).into_iter();
@@ -92,7 +92,7 @@ fn all_packages_are_read_with_their_dependencies() {
     assert!(model.dependencies().contains(&"fosssim-num"), "{:?}", model.dependencies());
 }
 
-/// A package that a manifest asks for is named by some source; optional ones may be there for their features.
+/// Some source must use every package in a manifest. Optional packages may exist only for their features.
 #[test]
 fn every_dependency_is_used() {
     let mut unused = Vec::new();

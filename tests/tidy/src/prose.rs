@@ -1,24 +1,24 @@
-//! Documents and comments that people read: links lead somewhere, sentences are short, and nouns stand for things.
+//! Documents and comments for readers: links work, sentences are short, and nouns name things.
 use crate::tree::{files, name, root, text};
 use std::path::{Path, PathBuf};
 
-/// A sentence of more words is read twice.
+/// Readers must read longer sentences twice.
 const MOST_WORDS: usize = 30;
 
-/// Four kinds of readers find their commands on one page.
+/// Each of four groups of readers must find its commands on one page.
 const MOST_WORDS_OF_README: usize = 1_200;
 
-/// A page of `docs` has one kind of reader, who reads it in a few minutes.
+/// A page of `docs` is for one group of readers, who read it in a few minutes.
 const MOST_WORDS_OF_PAGE: usize = 1_500;
 
-/// Returns the documents at the top, in `docs`, and beside files that need one.
+/// Returns the documents in the top folder, in `docs`, and next to files that need one.
 fn documents() -> Vec<PathBuf> {
     let docs = ["docs", "docs/rules", "docs/sandbox", "docs/server"];
     let beside = [".", "assets", "fuzz", "examples/deploy", "examples/traces"];
     documents_in(&docs.into_iter().chain(beside).collect::<Vec<_>>())
 }
 
-/// Returns the documents of these folders. Those in `docs/spec` describe the original, in its terms.
+/// Returns the documents of these folders, without those in `docs/spec`, which describe the original in its own terms.
 fn documents_in(folders: &[&str]) -> Vec<PathBuf> {
     let folders = folders.iter().map(|folder| root().join(folder));
     let entries = folders.flat_map(|folder| std::fs::read_dir(folder).expect("a folder"));
@@ -26,7 +26,7 @@ fn documents_in(folders: &[&str]) -> Vec<PathBuf> {
     paths.filter(|path| path.extension().is_some_and(|ending| ending == "md")).collect()
 }
 
-/// The text without code blocks and tables.
+/// Returns the text without code blocks and tables.
 fn paragraphs(text: &str) -> String {
     let mut is_code = false;
     let mut kept = String::new();
@@ -35,7 +35,7 @@ fn paragraphs(text: &str) -> String {
             is_code = !is_code;
             kept.push_str(".\n");
         } else if !is_code && !line.starts_with('|') {
-            // A heading, an entry of a list, and an empty line end a sentence.
+            // A heading, a list entry and an empty line end a sentence.
             let starts = line.is_empty() || line.starts_with(['#', '*', '-']);
             kept.push_str(if starts { ".\n" } else { "" });
             kept.push_str(line);
@@ -45,7 +45,7 @@ fn paragraphs(text: &str) -> String {
     kept
 }
 
-/// Returns the sentences of a text, each as its words.
+/// Returns the sentences of a text, each as a list of words.
 fn sentences(text: &str) -> Vec<Vec<&str>> {
     let mut sentences = vec![Vec::new()];
     for word in text.split_whitespace() {
@@ -69,7 +69,7 @@ fn sentences_end_before_they_must_be_read_twice() {
     }
 }
 
-/// Words in place of a noun, with which a sentence must be read twice.
+/// Words that replace a noun, so that readers must read the sentence twice.
 const STAND_INS: [&str; 2] = ["whoever", "so many"];
 
 #[test]
@@ -93,7 +93,7 @@ fn nouns_stand_for_people_and_numbers() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// British forms of words: spelling is American. Names of published scenes keep theirs.
+/// British spellings. The project uses American spelling. Names of published scenes keep theirs.
 const BRITISH: [&str; 14] = [
     "artefact",
     "behaviour",
@@ -128,7 +128,7 @@ fn spelling_is_american() {
     assert!(found.is_empty(), "{found:#?}");
 }
 
-/// Comments that begin with such a word have no subject: "What a worker does" names neither the thing nor its kind.
+/// Comments that begin with such a word have no subject: "What a worker does" does not say what the item is.
 const QUESTIONS: [&str; 4] = ["What", "Who", "Whatever", "Whoever"];
 
 #[test]
@@ -153,7 +153,7 @@ fn readme_is_one_page() {
     assert!(words <= MOST_WORDS_OF_README, "README.md has {words} words");
 }
 
-/// Only the table of attacks, which a script makes, is longer; `docs/spec` is for looking things up.
+/// Only the table of attacks, which a script generates, is longer. The pages in `docs/spec` are reference pages.
 #[test]
 fn pages_are_short() {
     for page in documents_in(&["docs", "docs/rules", "docs/sandbox", "docs/server"]) {
@@ -162,7 +162,7 @@ fn pages_are_short() {
     }
 }
 
-/// The anchors of a document's headings, as GitHub and mdBook make them.
+/// Returns the anchors of a document's headings, as GitHub and mdBook create them.
 fn anchors(text: &str) -> Vec<String> {
     let titles = text.lines().filter(|line| line.starts_with('#')).map(|line| line.trim_start_matches('#').trim());
     let kept = |c: char| c.is_alphanumeric() || c == '-' || c == '_';
@@ -185,7 +185,7 @@ fn links_of_documents_lead_to_files_and_headings() {
             links += 1;
             let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
             let path = if file.is_empty() { document.clone() } else { folder.join(file) };
-            // The book holds the pages of `docs` only, and calls a folder's `README.md` otherwise.
+            // The book contains only the pages of `docs`, and gives a folder's `README.md` another name.
             let is_in_book = document.starts_with(root().join("docs")) && !document.ends_with("SUMMARY.md");
             let is_outside = path.canonicalize().is_ok_and(|path| !path.starts_with(root().join("docs")));
             if !path.exists()
@@ -200,7 +200,7 @@ fn links_of_documents_lead_to_files_and_headings() {
     assert!(links > 90, "{links} links: are these the documents?");
 }
 
-/// A setting of the server without a row in its pages is found here.
+/// Every setting of the server needs a row in its pages.
 #[test]
 fn settings_of_the_server_have_their_rows() {
     let arguments = text(&root().join("crates/server/src/cli/arguments.rs"));
@@ -222,12 +222,12 @@ fn the_table_of_contents_has_every_page() {
     }
 }
 
-/// The words that a document puts between backticks.
+/// Returns the words between backticks in a document.
 fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// Each invariant names a test or a command that holds it, and files that are named exist.
+/// Each invariant names a test or a command that checks it, and all named files exist.
 #[test]
 fn invariants_name_what_holds_them() {
     let page = text(&root().join("ARCHITECTURE.md"));
@@ -239,7 +239,7 @@ fn invariants_name_what_holds_them() {
         assert!(quoted(held).next().is_some(), "nothing holds: {invariant}");
     }
     let files = quoted(&page).filter(|word| word.ends_with(".rs") && word.contains('/') && !word.contains(['<', '{']));
-    // Rows of a table may shorten a path that the same row has begun.
+    // Rows of a table may shorten a path whose beginning is in the same row.
     let missing: Vec<&str> = files
         .filter(|file| file.starts_with("crates/") || file.starts_with("tests/"))
         .filter(|file| !root().join(file).exists())

@@ -1,36 +1,36 @@
-//! Numbers that only fall. A change that mends a part of one lowers it here; none may raise it.
+//! Numbers that may only fall. A change that reduces one of them lowers the limit here. No change may raise a limit.
 use crate::tree::{crate_of, files, is_of_tests, name, root, sources, text};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::{Path, PathBuf},
 };
 
-/// Lines wider than rustfmt makes code, which are comments and texts.
+/// The number of lines wider than rustfmt's code: comments and strings.
 const MOST_WIDE_LINES: usize = 14;
 
-/// A line is as wide as rustfmt makes code (`rustfmt.toml`).
+/// The width of rustfmt's code lines (`rustfmt.toml`).
 const WIDTH: usize = 120;
 
-/// Types whose name stands in a second crate, too.
+/// The number of types whose name also occurs in a second crate.
 const MOST_SHARED_NAMES: usize = 47;
 
-/// Participles, adverbs and pronouns that do not end in `ed`: no type has one of them for its name.
+/// Participles, adverbs and pronouns that do not end in `ed`. No type may have one of them as its name.
 const BARE_NAMES: [&str; 33] = [
     "After", "Again", "Alive", "Alone", "Apart", "At", "Before", "Beside", "Both", "Chosen", "Common", "Done", "Drawn",
     "Exactly", "Found", "Held", "Kept", "Known", "Late", "Left", "Made", "Nearby", "Outside", "Own", "Ran", "Said",
     "Seen", "Several", "Shown", "Told", "Unknown", "Written", "Wrong",
 ];
 
-/// Names of functions that are no verbs. No function's name begins with `of_`, or is a participle, either.
+/// Names of functions that are not verbs. A function's name must also not begin with `of_` or be a participle.
 const VAGUE_FUNCTIONS: [&str; 5] = ["look", "of", "stand", "told", "words"];
 
-/// A file that is longer holds a second noun.
+/// A longer file has more than one purpose.
 const LONGEST_FILE: usize = 600;
 
-/// A function that is longer does two things.
+/// A longer function has more than one purpose.
 const LONGEST_FUNCTION: usize = 80;
 
-/// Roots of crates in which unsafe code stands, and what for.
+/// Roots of crates that contain unsafe code, each with its purpose.
 const UNSAFE: [(&str, &str); 8] = [
     ("crates/browser/src/lib.rs", "a module's functions have names that the page knows"),
     ("crates/mistakes/tests/memory.rs", "counts allocations"),
@@ -42,7 +42,7 @@ const UNSAFE: [(&str, &str); 8] = [
     ("benches/course.rs", "asks the kernel for processor time"),
 ];
 
-/// The name of the function that a line begins.
+/// Returns the name of the function that begins on a line.
 pub fn function(line: &str) -> Option<&str> {
     let mut words = line.trim_start();
     while let Some((word, rest)) = words.split_once(' ') {
@@ -56,7 +56,8 @@ pub fn function(line: &str) -> Option<&str> {
     None
 }
 
-/// Functions of more than one line with their lengths; rustfmt indents an end as it does the beginning.
+/// Returns the functions of more than one line with their lengths. rustfmt indents the end of an item like its
+/// beginning.
 fn functions(text: &str) -> Vec<(&str, usize)> {
     let lines: Vec<&str> = text.lines().collect();
     let mut found = Vec::new();
@@ -69,7 +70,7 @@ fn functions(text: &str) -> Vec<(&str, usize)> {
     found
 }
 
-/// The name of the type that a line at the left edge begins.
+/// Returns the name of the type that begins on an unindented line.
 fn type_name(line: &str) -> Option<&str> {
     let line = line.strip_prefix("pub").map_or(line, |rest| rest.trim_start_matches(|c| c != ' ').trim_start());
     let (kind, rest) = line.split_once(' ')?;
@@ -77,12 +78,12 @@ fn type_name(line: &str) -> Option<&str> {
     is_type.then(|| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next())?
 }
 
-/// Those that are longer than they may be.
+/// Returns the items that are longer than allowed.
 fn too_long(found: BTreeMap<String, usize>, most: usize) -> Vec<String> {
     found.into_iter().filter(|(_, length)| *length > most).map(|(name, n)| format!("{name}: {n}")).collect()
 }
 
-/// Whether a program, a library, or a test or bench of its own begins in a file.
+/// Returns whether a file is the root of a program, a library, a test or a benchmark.
 fn is_root(name: &str) -> bool {
     matches!(
         name.split('/').collect::<Vec<_>>()[..],
@@ -142,7 +143,7 @@ fn lines_are_as_wide_as_rustfmt_makes_code() {
     assert!(wide.values().sum::<usize>() <= MOST_WIDE_LINES, "wrap what you touch: {wide:?}");
 }
 
-/// A reader of `Place` must not have to ask which of twelve it is.
+/// A reader of `Place` should not have to find out which of twelve types it is.
 #[test]
 fn names_of_types_stand_in_one_crate() {
     let mut crates: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
@@ -156,13 +157,13 @@ fn names_of_types_stand_in_one_crate() {
     assert!(crates.len() <= MOST_SHARED_NAMES, "{} names stand in several crates: {crates:#?}", crates.len());
 }
 
-/// Whether a name in the letters of types is one word, and says what has become of something.
+/// Returns whether a type name is one word, and a participle or a similar word.
 fn is_bare(name: &str) -> bool {
     let is_one_word = !name.chars().skip(1).any(|letter| letter.is_uppercase() || letter == '_');
     is_one_word && name.ends_with("ed") && !name.ends_with("eed") || BARE_NAMES.contains(&name)
 }
 
-/// A name says what a value is, not what has become of it.
+/// The name of a type is a noun, not a participle.
 #[test]
 fn types_have_nouns_for_names() {
     let mut bare = Vec::new();
@@ -174,8 +175,8 @@ fn types_have_nouns_for_names() {
     assert!(bare.is_empty(), "these names lack a noun, as `BatchResult` instead of `Graded`: {bare:#?}");
 }
 
-/// A function's name says what it does; a constructor is `new`, `from_x`, `with_x`, `read` or `parse`. Numbers are
-/// `rounded` and `shifted` in `num`, and a motion is taken `at` a time, as elsewhere in mathematics.
+/// The name of a function describes what it does; a constructor is `new`, `from_x`, `with_x`, `read` or `parse`. The
+/// names `rounded` and `shifted` in `num`, and `at` for a motion at a time, are common in mathematics.
 #[test]
 fn functions_have_verbs_for_names() {
     let is_participle = |name: &str| name != "at" && is_bare(&(name[..1].to_uppercase() + &name[1..]));
@@ -191,7 +192,7 @@ fn functions_have_verbs_for_names() {
     assert!(vague.is_empty(), "these names are no verbs: {vague:#?}");
 }
 
-/// A list beside its enum lacks what somebody adds to the enum; `fosssim_num::closed_set` writes both.
+/// A list next to its enum may lack new variants; `fosssim_num::closed_set` generates both.
 #[test]
 fn lists_of_all_variants_are_generated() {
     let by_hand = |line: &str| {
@@ -213,7 +214,7 @@ fn no_crate_without_a_reason_may_hold_unsafe_code() {
     assert_eq!(without, listed, "forbid unsafe code, or say here what it is for");
 }
 
-/// The files that a source may mean by its `mod name;` and `#[path = "..."]`.
+/// Returns the files to which a source's `mod name;` and `#[path = "..."]` may refer.
 pub fn modules(source: &Path) -> Vec<PathBuf> {
     let (folder, own) = (source.parent().expect("a folder"), source.with_extension(""));
     let mut files = Vec::new();
@@ -239,7 +240,7 @@ fn every_source_is_compiled() {
     assert!(unused.is_empty(), "nobody declares {unused:#?}");
 }
 
-/// A snapshot is named by a test, or after a scene.
+/// A test names every snapshot, or the snapshot has the name of a scene.
 #[test]
 fn every_snapshot_is_compared() {
     let all: String = sources().iter().map(|source| text(source)).collect();
@@ -248,7 +249,7 @@ fn every_snapshot_is_compared() {
     let scenes = files(&root().join("assets"), ".xml");
     let is_scene = |short: &str| scenes.iter().any(|scene| scene.ends_with(short.replace("--", "/") + ".xml"));
     let is_used = |snapshot: &PathBuf| {
-        // `crate__module__tests__name@input.snap_weights`
+        // The form of the names is `crate__module__tests__name@input.snap_weights`.
         let stem = snapshot.file_stem().expect("a name").to_str().expect("a name");
         let short = stem.split('@').next().and_then(|stem| stem.rsplit("__").next()).expect("a name");
         let numbered = short.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('-');

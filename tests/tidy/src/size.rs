@@ -1,12 +1,13 @@
-//! Lines of code by crate only fall. A change that raises one says beside its number what it removed instead.
+//! The number of lines of code of each crate may only fall. A change that raises one of them states here what it
+//! removed instead.
 use crate::tree::{crate_of, is_of_tests, name, sources, text};
 use std::{
     collections::{BTreeMap, BTreeSet},
     path::Path,
 };
 
-/// The most lines of code of each crate, and of the program (`src`), in hundreds: without tests, comments and blank
-/// lines. A crate that is not here may have none.
+/// The maximum number of lines of code of each crate, and of the program (`src`), in hundreds: without tests, comments
+/// and blank lines. Crates that are not listed may contain no code.
 // Names of functions became verbs, and names of constants say what they limit, so more calls take two lines.
 const HUNDREDS: [(&str, usize); 22] = [
     ("browser", 10),
@@ -56,19 +57,20 @@ const HUNDREDS: [(&str, usize); 22] = [
     ("student", 56),
 ];
 
-/// Whether a line is an attribute of an item for tests.
+/// Returns whether a line is an attribute of an item for tests.
 fn is_for_tests(line: &str) -> bool {
     line.starts_with("#[cfg(test)]") || line.starts_with("#[cfg(all(test,")
 }
 
-/// The modules that a file declares for tests only.
+/// Returns the modules that a file declares only for tests.
 fn test_modules(text: &str) -> impl Iterator<Item = &str> {
     let lines = text.lines().zip(text.lines().skip(1));
     let declared = lines.filter(|(attribute, _)| is_for_tests(attribute)).map(|(_, line)| line);
     declared.filter_map(|line| line.strip_suffix(';')?.rsplit_once("mod ").map(|(_, module)| module))
 }
 
-/// Lines of code of a file, without its items for tests. rustfmt indents the end of an item as its beginning.
+/// Returns the number of lines of code of a file, without its items for tests. rustfmt indents the end of an item like
+/// its beginning.
 fn code(text: &str) -> usize {
     let mut count = 0;
     let mut lines = text.lines();
@@ -93,7 +95,7 @@ fn code(text: &str) -> usize {
     count
 }
 
-/// Lines of code by crate.
+/// Returns the number of lines of code of each crate.
 fn sizes() -> BTreeMap<String, usize> {
     let sources = sources();
     let mut of_tests = BTreeSet::new();

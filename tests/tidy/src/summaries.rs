@@ -1,14 +1,14 @@
-//! The first words of doc comments: a function's summary says what it does, and no description lacks its subject.
+//! The first words of doc comments: the summary of a function begins with a verb, and every description has a subject.
 use crate::{
     ratchets::function,
     tree::{is_of_tests, name, sources, text},
 };
 
-/// Plurals and others that end like verbs.
+/// Words, such as plurals, that end like verbs.
 const NO_VERBS: [&str; 9] =
     ["This", "Its", "As", "Always", "Lines", "Words", "Sentences", "Insertions", "Explanations"];
 
-/// Beginnings that need the sentence before. Schemas and the API's description are made from these comments.
+/// Beginnings that depend on an earlier sentence. Schemas and the API's description are generated from these comments.
 const WITHOUT_SUBJECT: [&str; 8] = ["The same", "It", "Its", "They", "Their", "Nor", "Of", "So"];
 
 /// Returns whether a summary begins with a verb in the third person.
@@ -17,14 +17,14 @@ fn begins_with_verb(summary: &str) -> bool {
     first.starts_with(|c: char| c.is_ascii_uppercase()) && first.ends_with('s') && !NO_VERBS.contains(&first)
 }
 
-/// Returns whether a description can't be read alone.
+/// Returns whether a description cannot be understood on its own.
 fn lacks_subject(summary: &str) -> bool {
     let is_cut = |rest: &str| !rest.starts_with(char::is_alphanumeric);
     WITHOUT_SUBJECT.iter().any(|words| summary.strip_prefix(words).is_some_and(is_cut))
 }
 
-/// Returns the first lines of doc comments, each with the line of code that follows the comment and its attributes;
-/// without those of tests.
+/// Returns the first lines of doc comments outside tests, each with the line of code after the comment and its
+/// attributes.
 fn summaries(text: &str) -> Vec<(&str, &str)> {
     let lines: Vec<&str> = text.lines().map(str::trim_start).collect();
     let is_doc = |index: usize| lines.get(index).is_some_and(|line| line.starts_with("///"));
@@ -38,7 +38,7 @@ fn summaries(text: &str) -> Vec<(&str, &str)> {
     found.collect()
 }
 
-/// Returns those of all sources but tests that fail, with the names of their files.
+/// Returns the failing summaries of all sources except tests, with the names of their files.
 fn failing(fails: impl Fn(&str, &str) -> bool) -> Vec<String> {
     let mut all = Vec::new();
     for source in sources().iter().filter(|source| !is_of_tests(name(source))) {

@@ -1,9 +1,9 @@
-//! Vectors of the numeric core are nalgebra's, and nobody divides one: the original multiplies by the reciprocal, with
-//! other bits. A lint can forbid the library's methods, but no operator.
+//! Vectors of the numeric core are nalgebra's, and code must not divide them: the original multiplies by the
+//! reciprocal, which gives other bits. A lint can forbid the library's methods, but not an operator.
 use crate::tree::{is_of_tests, name, root, sources, text};
 use std::collections::BTreeSet;
 
-/// The crates whose bits are a contract.
+/// The crates whose results must keep the same bits.
 const CRATES: [&str; 4] = ["crates/num/", "crates/model/", "crates/judge/", "crates/student/src/"];
 
 /// The one file that divides vectors.
@@ -13,13 +13,14 @@ fn is_of_word(c: char) -> bool {
     c.is_alphanumeric() || c == '_'
 }
 
-/// The last word of a text.
+/// Returns the last word of a text.
 fn last_word(text: &str) -> &str {
     let text = text.trim_end();
     &text[text.rfind(|c| !is_of_word(c)).map_or(0, |at| at + 1)..]
 }
 
-/// The names that a source gives to vectors: parameters and fields of that type, and results of what makes vectors.
+/// Returns the names of vectors in a source: parameters and fields of that type, and results of functions that return
+/// vectors.
 fn vectors(source: &str) -> BTreeSet<&str> {
     let typed = source.match_indices(": Vec2").map(|(at, _)| last_word(&source[..at]));
     let makes = |line: &&str| {
@@ -30,7 +31,7 @@ fn vectors(source: &str) -> BTreeSet<&str> {
     typed.chain(bound).filter(|name| !name.is_empty()).collect()
 }
 
-/// The lines in which a vector is divided.
+/// Returns the lines that divide a vector.
 fn divisions(source: &str) -> Vec<&str> {
     let vectors = vectors(source);
     let divides = |line: &&str| {

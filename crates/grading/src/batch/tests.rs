@@ -14,7 +14,7 @@ use fosssim_mistakes::together::disclosed_grade;
 use fosssim_sandbox::Job;
 use std::{path::Path, time::Duration};
 
-/// Step and particle of a wrong position that is the first difference.
+/// Returns the step and particle of a wrong position that is the first difference.
 fn first_divergence(result: &SceneResult) -> (u32, usize) {
     let told = result.disclosure.as_ref().expect("full hints");
     match &told.official().first_divergence {
@@ -162,7 +162,7 @@ fn the_official_book_gives_verdict_and_points_and_results_are_not_mixed_up() {
     assert!(fair.scenes().all(|scene| !scene.cached && scene.reason == trailing));
     let parity = grade(Rules::Parity, false);
     assert_eq!((parity.verdict, parity.count_differing()), (Verdict::Accepted, 0));
-    // The kept results say the same, and recordings know parity only.
+    // The stored results are the same, and recordings have only a parity verdict.
     let again = grade(Rules::Both, false);
     assert!(again.scenes().all(|scene| scene.cached && scene.difference_cause == Some(Cause::TrailingBytes)));
     assert_eq!(grade(Rules::Both, true).rules, Rules::Parity);
@@ -228,7 +228,7 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
         grader.options.jobs = jobs;
         let grades = grade_all(&grader, &stage.submissions(&["slow", "right"]), None, &never, &mut |_| {}).grades;
         let expected = if time_outs == 0 { scenes } else { time_outs as usize };
-        // Jobs that work side by side may have begun with others meanwhile.
+        // Parallel jobs may have started other scenes in the meantime.
         let began = stage.started_count() - scenes;
         assert!(began == expected || jobs > 1 && began > expected, "{began} of {expected} with {jobs} jobs");
         assert_eq!((grades[0].verdict, grades[0].points), (Verdict::TimeLimit, Some(0.0)));
@@ -238,7 +238,7 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
     }
 }
 
-/// The reference's runs tell what the scenes have in common in which a program crashes.
+/// The reference's runs show what the scenes in which a program crashes have in common.
 #[test]
 fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let stage = TestGrading::new();
@@ -338,7 +338,7 @@ fn bytes_behind_the_last_record_have_one_consequence_whoever_ends_first() {
         ("right-then-byte-sleeps", Verdict::TimeLimit, Verdict::TimeLimit),
         ("right-then-byte-crashes", Verdict::RuntimeError, Verdict::RuntimeError),
         ("right-then-byte-fails", Verdict::RuntimeError, Verdict::RuntimeError),
-        // Beyond the limit the grader does not wait for the program's end, so the end cannot count.
+        // Beyond the limit the grader does not wait for the program's end, so its exit code cannot count.
         ("right-then-flood-exits", parity, fair),
         ("right-then-flood-stopped", parity, fair),
         ("right-then-flood-unread", parity, fair),

@@ -102,7 +102,7 @@ fn broken_lines_are_told_and_nothing_that_follows_from_them() {
     assert!(error.problems.iter().all(|(at, _)| at.line >= 2), "{error}");
     assert!(!error.to_string().contains("no [[group]]"), "{error}");
     assert!(read("").expect_err("empty").to_string().contains("no [[group]]"));
-    // An integer that no reader takes is out of its range, and the rest of the suite is still there.
+    // An integer that no reader accepts is out of its range, and the rest of the suite is still read.
     let large = "schema = 1\nname = \"a\"\n[[group]]\nname = \"b\"\nscenes = [\"a\"]\npoints = 99999999999999999999\n";
     let told = read(large).expect_err("too many").to_string();
     assert!(

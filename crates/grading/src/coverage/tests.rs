@@ -14,8 +14,7 @@ fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
 
 #[test]
 fn what_happens_is_seen_with_its_properties() {
-    // Two discs run side by side into one another's edge of a world without impulses: a zone that shifts and does not
-    // turn.
+    // Two discs run side by side into each other's edge in a scene without impulses: the zone moves and does not turn.
     let coverage = of(r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
         <collision type="hybrid" COR="0.5" maxiters="0" k="0" thickness="0"/>
         <particle m="1" px="0" py="0" vx="4" vy="0" fixed="0" radius="1"/>

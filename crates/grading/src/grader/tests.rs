@@ -9,11 +9,11 @@ use crate::{
 };
 use std::collections::BTreeMap;
 
-/// Results that are gone when the grader is.
+/// Results that exist only as long as the grader.
 #[derive(Default)]
 struct MemoryResults {
     kept: Mutex<BTreeMap<ResultKey, SceneResult>>,
-    /// The greatest number of keys: later ones can't be kept, as on a disk that is full. Without it there is no limit.
+    /// The maximum number of keys, or `None` for no limit. Later results cannot be stored, as on a full disk.
     room: Option<usize>,
 }
 
@@ -54,7 +54,7 @@ fn grade(
     (grades.into_iter().next().expect("a grade"), fault, told)
 }
 
-/// The content of a grade, except for whether its results were found and how long judging took.
+/// Returns the content of a grade, without the time of judging and whether its results were already stored.
 fn says(grade: &Grade) -> (Verdict, Option<f64>, Vec<SceneResult>) {
     let timeless = |result: &SceneResult| SceneResult {
         measured: Measurements { judging: Duration::ZERO, ..result.measured },
@@ -103,7 +103,7 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
     assert_eq!((small.len(), stage.started_count()), (3, 4), "the fourth result was one too many");
     assert_eq!(told.len(), plan.scenes().count(), "every scene is told of all the same");
-    // After a teacher has freed space, the grading continues there.
+    // After a teacher has freed space, the grading continues.
     let (resumed, _, _) = grade(&grader, &submission, &small);
     assert_eq!((resumed.count_reused(), stage.started_count()), (3, 5));
 }
@@ -131,7 +131,7 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
     assert_eq!((mended.verdict, mended.count_reused()), (Verdict::WrongAnswer, scenes - 1));
 }
 
-/// A place that fails in the worst way.
+/// A result store that panics.
 struct Panics;
 
 impl Results for Panics {

@@ -253,7 +253,7 @@ mod tests {
         journal.set_len(MAX_JOURNAL_BYTES + 1).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();
         assert!(refused.contains("journal.jsonl") && refused.contains("--fresh"), "{refused}");
-        // A line without end takes neither memory nor time, and nothing is changed.
+        // A line without an end uses neither memory nor time, and nothing is changed.
         journal.set_len(4 << 30).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("damaged").to_string();
         assert!(refused.contains("a line of more than 16777216 bytes"), "{refused}");
@@ -275,7 +275,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.store(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
-        // There is no room for what is written here.
+        // There is no space for this write.
         journal.journal().file = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
         let error = journal.store(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");

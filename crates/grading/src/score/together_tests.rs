@@ -1,4 +1,4 @@
-//! Explanations that all scenes together make.
+//! Explanations of all scenes together.
 use crate::{
     Grade, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
@@ -66,8 +66,8 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
     grade
 }
 
-/// An explanation that all scenes together give is reported for each that it explains; each reports for itself where
-/// values stop being numbers.
+/// An explanation of all scenes together is reported for each scene that it explains. Values that are not finite are
+/// reported for each scene separately.
 #[test]
 fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {
@@ -105,7 +105,7 @@ fn each_scene_says_what_all_together_say() {
     assert_eq!(steps, [Some(7), Some(3), Some(5)]);
 }
 
-/// A mistake is mended first, before the place where values stop being numbers matters.
+/// Students should fix a mistake first, before the values that are not finite.
 #[test]
 fn where_numbers_end_comes_last() {
     let end = || {
@@ -130,8 +130,8 @@ fn where_numbers_end_comes_last() {
     assert_eq!(first(vec![vec![end(), short(3)], vec![end(), short(3)]]), "loop-one-fewer", "though it is not proven");
 }
 
-/// Mending a mistake is worth the points of the scenes in which it is the only mistake, and of a group of all or
-/// nothing only as a whole.
+/// Fixing a mistake is worth the points of the scenes in which it is the only mistake. A group that gives all points or
+/// none counts only as a whole.
 #[test]
 fn a_mistake_is_worth_the_points_that_it_alone_costs() {
     let one = |key: &str| explanation(key, ExplanationTopic::Mistake, 4);

@@ -26,7 +26,7 @@ fn key() -> ResultKey {
     ResultKey::from_program(&blake3::hash(b"program"), b"scene", &[])
 }
 
-/// A result that was written and read again.
+/// Returns a result after it was written and read again.
 fn again(result: &SceneResult) -> SceneResult {
     let entry = read_line(&format_line(&key(), "submission", result)).expect("our own form is sound");
     assert_eq!((&entry.key, entry.submission.as_str()), (&key(), "submission"));
@@ -37,7 +37,7 @@ fn pair(kind: PairKind) -> Pair {
     Pair { kind, first: 3, second: 1 }
 }
 
-/// A finding of every sort, with the strangest numbers.
+/// Returns a finding of every kind, with unusual numbers.
 fn findings() -> Vec<Finding> {
     let pass = |stage| Pass { stage, index: 2 };
     let place = |kind, stage, role| PolynomialPlace { pass: pass(stage), pair: pair(kind), role, index: 17 };
@@ -151,7 +151,7 @@ fn wrong() -> SceneResult {
 #[test]
 fn a_result_reads_back_the_same_to_the_last_bit() {
     let result = wrong();
-    // Equality does not see the sign of a zero; this does.
+    // Equality ignores the sign of a zero; this comparison does not.
     assert_eq!(format!("{:?}", again(&result)), format!("{result:?}"));
     let nan = FindingDetail::WrongNormal {
         expected: Impulse { pair: pair(PairKind::ParticleEdge), normal: Vec2::new(0.0, 1.0), time: f64::NAN },

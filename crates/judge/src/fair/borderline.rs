@@ -64,7 +64,8 @@ mod tests {
 
     #[test]
     fn a_ball_that_ends_its_step_in_touch_is_borderline() {
-        // After the first step the ball's distance is 0.1, its radius, except for a rounding: half a step's way is 0.9.
+        // After the first step the distance of the ball is 0.1, its radius, except for a rounding error: half of the
+        // step's displacement is 0.9.
         let ball = r#"<particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>"#;
         let found = found(ball);
         assert!(found.iter().any(|decision| decision.step == 1), "{found:?}");

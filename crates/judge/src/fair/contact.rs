@@ -320,7 +320,7 @@ pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
 mod tests {
     use super::*;
 
-    /// If both states have NaN, the distance is zero. A program that ends with NaN where the reference does has met the
+    /// If both states contain NaN, the distance is zero. A program that ends with NaN like the reference has met the
     /// scene's requirements.
     #[test]
     fn what_is_no_number_for_the_reference_either_is_no_distance() {

@@ -118,7 +118,7 @@ mod tests {
             factors_from((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual_range(),
             Some([1e-6, 2.0])
         );
-        // Divided by their sizes.
+        // The polynomials are divided by their sizes.
         let sizes = factors_from((1..500).map(|n| 1.0 / f64::from(n)));
         assert_eq!(sizes.usual_range().map(|[least, _]| least), Some(1.0 / 499.0));
         for factor in [5e-324, 1e-300, 1.0, 1e300, f64::MAX] {

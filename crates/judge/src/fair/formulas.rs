@@ -288,7 +288,7 @@ pub(super) fn extent(v: Vec2) -> f64 {
 mod tests {
     use super::*;
 
-    /// Times between which a point moves by one or two rounding errors are the same moment; others differ.
+    /// Two times are the same moment if a point moves by at most two rounding errors between them; other times differ.
     #[test]
     fn a_moment_is_as_long_as_nothing_moves() {
         let point =
@@ -312,7 +312,7 @@ mod tests {
         <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
     </scene>"#;
 
-    /// The values are the reference's own bits.
+    /// The values have the reference's own bits.
     #[test]
     fn values_are_those_of_the_reference() {
         struct Compare<'a>(&'a Scene, usize);
@@ -338,7 +338,7 @@ mod tests {
         assert_eq!(compare.1, 3 * 5 + (5 + 3 + 3 + 6) + 3 * 5);
     }
 
-    /// The assignment's own slip: the definition gives another t³ coefficient (numerics.md 1.1).
+    /// This is the assignment's own mistake: the definition gives another t³ coefficient (numerics.md 1.1).
     #[test]
     fn the_right_approach_differs_in_its_cubic_coefficient_only() {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
@@ -348,7 +348,8 @@ mod tests {
         let (course, right) = (expected.polynomial(3), expected.other_form(3).expect("an edge"));
         let differing: Vec<usize> = (0..6).filter(|&k| course[k].value != right[k].value).collect();
         assert_eq!(differing, [2]);
-        // -q(2 q' g - q g')/2 with q = e x w, g = e.e (numerics.md 1.2), evaluated at a time by differences of points.
+        // This is -q(2 q' g - q g')/2 with q = e x w, g = e.e (numerics.md 1.2), evaluated at a time by differences of
+        // points.
         let at_time = |t: f64| {
             let place = |p: usize| vector_at(&q_start, p) + t * (vector_at(&q_end, p) - vector_at(&q_start, p));
             let speed = |p: usize| vector_at(&q_end, p) - vector_at(&q_start, p);

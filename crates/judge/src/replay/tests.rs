@@ -1,4 +1,4 @@
-//! Batches and limits, tried from inside.
+//! Tests of batches and limits, inside the module.
 mod ways;
 
 use super::*;
@@ -6,7 +6,7 @@ use crate::{finding::FindingKind, rules::Ruling, samples::change_trace};
 use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
 use fosssim_num::vector::Vec2;
 
-/// The number of balls for which a pass logs more bytes than the reader's window has.
+/// Returns a scene in which a pass logs more bytes than the reader's buffer holds.
 fn crowd() -> Scene {
     let ball = |number: usize| {
         format!(r#"<particle m="1" px="{number}" py="0" vx="0" vy="0.{number:03}" fixed="0" radius="0.1"/>"#)
@@ -40,7 +40,7 @@ fn a_batch_counts_all_lists() {
     }
 }
 
-/// The contacts of a full record are distinguished without comparing each with all others.
+/// The contacts of a full record are distinguished without comparing every contact with all others.
 #[test]
 fn a_crowd_of_contacts_is_judged() {
     let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
@@ -66,7 +66,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     (0..2).for_each(|_| simulation.step(&mut recorder).expect("a step"));
     let right = recorder.finish().expect("memory").0;
-    // The same trace, with a further polynomial at the end of every list.
+    // This is the same trace with an additional polynomial at the end of every list.
     let (mut reader, mut writer) = (Reader::from_slice(&right, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a frame") {
@@ -89,7 +89,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     }
 }
 
-/// States from which no next one follows are wrong answers: the rest of the trace is read and judged by the fair rules.
+/// States without a next state are wrong results: the rest of the trace is read and judged by the fair rules.
 #[test]
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
     let scene = crate::samples::scene(crate::samples::ZONES_SCENE);

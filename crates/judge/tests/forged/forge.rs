@@ -1,4 +1,5 @@
-//! Right traces made wrong at random, programs whose polynomials have factors, and what the fair rules may say of both.
+//! Right traces with random errors, programs whose polynomials have factors, and the results that the fair rules may
+//! give for both.
 use fosssim_judge::{
     Finding, FindingKind,
     fair::{
@@ -15,13 +16,13 @@ use fosssim_model::{
 };
 use fosssim_num::{bounded::BoundedValue, polynomial::Polynomial};
 
-/// Products of such coefficients overflow.
+/// Products of coefficients of this size overflow.
 const OVERFLOWS: f64 = 1e100;
 
-/// The number of steps in which one polynomial in ten may be a single one.
+/// With up to this number of steps, one polynomial in ten may be a single one.
 const FEW: usize = 40;
 
-/// Numbers that look random and are the same on every run.
+/// A generator of numbers that look random and are the same in every run.
 pub struct Random(u64);
 
 impl Random {
@@ -40,7 +41,7 @@ impl Random {
         (self.bits() % bound as u64) as usize
     }
 
-    /// Ten to a uniform power.
+    /// Returns ten to the power of a uniform number.
     fn log(&mut self, low: f64, high: f64) -> f64 {
         10.0_f64.powf(low + (high - low) * self.bits() as f64 / (1_u64 << 53) as f64)
     }
@@ -57,7 +58,7 @@ struct Known {
     expected: ExpectedPolynomials,
 }
 
-/// A scene, its right trace, and what its polynomials should be.
+/// A scene, its right trace, and the right values of its polynomials.
 pub struct Stage {
     name: String,
     scene: Scene,
@@ -65,7 +66,7 @@ pub struct Stage {
     steps: Vec<Vec<Known>>,
 }
 
-/// Notes what each polynomial should be.
+/// Records the right value of each polynomial.
 struct Note<'a>(&'a Scene, Vec<Known>);
 
 impl Observer for Note<'_> {
@@ -76,7 +77,8 @@ impl Observer for Note<'_> {
     }
 }
 
-/// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
+/// Multiplies polynomials. The course's library drops the coefficients that become small, and the step continues with
+/// the others.
 struct Multiply<'a, F>(&'a Scene, F);
 
 impl<F: FnMut(Pair, usize, &[f64]) -> f64> StepController for Multiply<'_, F> {
@@ -95,7 +97,7 @@ fn scaled(list: &[f64], factor: f64) -> Polynomial {
 }
 
 impl Stage {
-    /// None if the scene logs no polynomials, or the reference has no result.
+    /// Returns `None` if the scene logs no polynomials, or the reference has no result.
     pub fn of(name: &str, scene: Scene) -> Option<Self> {
         let frames = run(&scene, &mut ())?;
         let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
@@ -119,7 +121,7 @@ impl Stage {
         Layout::for_scene(&self.scene).records_per_step() as usize
     }
 
-    /// The right trace with other polynomials, those of both records of a step alike.
+    /// Returns the right trace with other polynomials, the same in both records of a step.
     fn relogged(&self, change: impl Fn(usize, usize, &[f64]) -> Option<Vec<f64>>) -> Vec<u8> {
         let mut writer = Writer::new(Vec::new(), Layout::for_scene(&self.scene));
         for (number, frame) in self.frames.iter().enumerate() {
@@ -149,13 +151,13 @@ impl Stage {
         Ok(*quick.fair.expect("asked"))
     }
 
-    /// The coefficients of the end record's polynomial.
+    /// Returns the coefficients of the end record's polynomial.
     fn own(&self, step: usize, index: usize) -> &[f64] {
         self.frames[step * self.records_per_step()].polynomials.get(index)
     }
 }
 
-/// The frames of a run that `steer` may change.
+/// Returns the frames of a run that `steer` may change.
 fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
     let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
@@ -177,7 +179,7 @@ fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
 enum Base {
     One,
     Constant(f64),
-    /// Each is divided by its size.
+    /// Each polynomial is divided by its size.
     Size,
 }
 
@@ -218,12 +220,12 @@ enum Target {
     Step {
         step: usize,
     },
-    /// About one of this number.
+    /// About one polynomial in this number.
     Some {
         of: usize,
         seed: u64,
     },
-    /// All but these few.
+    /// All polynomials except about one in this number.
     AllBut {
         of: usize,
         seed: u64,
@@ -271,13 +273,13 @@ enum Change {
     DropTrailing(usize),
     Negate,
     Zeros,
-    /// In the place of each another one of the same step, this number of places further on.
+    /// Each polynomial is replaced by another one of the same step, this many places later.
     Exchange(usize),
-    /// One coefficient becomes this.
+    /// One coefficient gets this value.
     Value(f64),
     Constant(f64),
     LeadingZeros(usize),
-    /// With a factor, as the course's library keeps it.
+    /// The polynomial gets a factor, and the course's library drops small coefficients.
     Factor(f64),
 }
 
@@ -322,9 +324,9 @@ impl Change {
     }
 }
 
-/// The reason why a polynomial that is not the program's may pass, whatever others say: it is zero except for round-off
-/// and has numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that
-/// two of its coefficients agree on, or that takes nothing from it.
+/// Returns whether a changed polynomial may be accepted, whatever the other polynomials are. It may have any numbers if
+/// it is zero except for round-off. It is right with the program's factor. It is also right with a factor on which two
+/// of its coefficients agree, or with which no coefficient is dropped.
 fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     let of_form = |expected: &[BoundedValue]| {
         let scaled: Vec<BoundedValue> =
@@ -336,11 +338,12 @@ fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     of_form(known.expected.polynomial(known.number)) || known.expected.other_form(known.number).is_some_and(of_form)
 }
 
-/// Makes a right trace wrong. What the fair rules say about it that they must not, if anything.
+/// Makes a right trace wrong. Returns the result of the fair rules if it is not allowed.
 pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let base = Base::draw(random);
     let (target, change) = (Target::draw(stage, random), Change::draw(random));
-    // One with a factor may be to vouch for what is gone. Among few it does.
+    // A single polynomial with a factor may be the only evidence for dropped coefficients. Among few polynomials it is
+    // sufficient.
     let is_alone = random.below(3) == 0 && stage.steps.len() > FEW;
     let voucher = is_alone.then(|| (Target::draw(stage, random), random.log(-13.0, -6.0)));
     let changed = |step, index, own: &[f64]| {
@@ -358,7 +361,7 @@ pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let same = |one: &[f64], other: &[f64]| {
         one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
     };
-    // A polynomial that has a factor is right, and the course's library has dropped what it drops.
+    // A polynomial with a factor is right, even if the course's library has dropped its small coefficients.
     let is_of_program = matches!(change, Change::Factor(_));
     let without_reason = (1..=stage.steps.len())
         .flat_map(|step| (0..stage.steps[step - 1].len()).map(move |index| (step, index)))
@@ -392,18 +395,18 @@ enum Factors {
     All(f64),
     Kind(PairKind, f64),
     Number(PairKind, usize, f64),
-    /// Another one of each polynomial, between 1 and this.
+    /// Each polynomial has another factor, between 1 and this.
     Each(f64),
-    /// Another one of each pair, between this and its reciprocal.
+    /// Each pair has another factor, between this and its reciprocal.
     Pair(f64),
-    /// Each is divided by its size, or by the modulus of its leading coefficient.
+    /// Each polynomial is divided by its size, or by the modulus of its leading coefficient.
     Size,
     Leading,
 }
 
-/// Runs a program whose polynomials have factors. What the fair rules say about it that they must not, if anything: it
-/// may be refused where lost coefficients change a decision, and where polynomials are gone of a kind of which none
-/// tells a factor.
+/// Runs a program whose polynomials have factors. Returns the result of the fair rules if it is not allowed. They may
+/// reject the program if dropped coefficients change a decision, or if polynomials are dropped and no other polynomial
+/// of the kind shows a factor.
 pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let kind = random.pick(&PairKind::ALL);
     let factor = if random.below(2) == 0 { random.log(-300.0, 300.0) } else { random.log(-12.0, 6.0) };
@@ -444,13 +447,13 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let counts = &judged.findings.counts;
     let lost = counts.get(FindingKind::TrimmedDecision);
     let gone = counts.get(FindingKind::Coefficient);
-    // So large numbers overflow in the course's root finder, which decides otherwise then.
+    // Larger numbers overflow in the course's root finder, which then decides differently.
     let largest =
         frames.iter().flat_map(|frame| frame.polynomials.iter().flatten()).fold(0.0_f64, |most, c| most.max(c.abs()));
     if largest > OVERFLOWS {
         return None;
     }
-    // A program that misses a collision may end where two balls are one.
+    // A program that misses a collision may end with two balls at the same place.
     let beyond = counts.get(FindingKind::Position).min(lost);
     let is_explained = lost + gone + beyond == counts.total();
     let is_documented = judged.refusal.is_none() && is_explained;
@@ -460,9 +463,9 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     })
 }
 
-/// Makes one coefficient wrong of a polynomial whose pair is proven to be where it should, since the polynomial that
-/// comes from the same coordinates is right. What the fair rules say about it that they must not, if anything: it is
-/// the formula that is wrong.
+/// Makes one coefficient of a polynomial wrong. The pair's positions are proven right, because the polynomial from the
+/// same coordinates is right. Returns the result of the fair rules if it is not allowed: they must report the formula
+/// as wrong.
 pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
     let Target::One { step, index } = Target::draw(stage, random) else { return None };
     let known = stage.known(step, index);
@@ -485,7 +488,7 @@ pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
         Err(fault) => Some(format!("{}: {fault}", what())),
         Ok(judged) => {
             let first = judged.findings.first_divergence;
-            // The decision of a wrong polynomial may lead to other positions behind it.
+            // The decision of a wrong polynomial may lead to other positions after it.
             let is_formula =
                 |finding: &Finding| matches!(finding.kind(), FindingKind::Coefficient | FindingKind::PolynomialDegree);
             (!first.as_ref().is_some_and(is_formula))

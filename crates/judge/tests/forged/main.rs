@@ -1,4 +1,4 @@
-//! A trace that passes the fair rules has a reason to, and programs with factors pass.
+//! A trace that the fair rules accept has a valid reason, and programs with factors are accepted.
 #![forbid(unsafe_code)]
 mod forge;
 
@@ -6,7 +6,7 @@ use forge::{Random, Stage, forge, misprint, multiply};
 use fosssim_model::scene::original;
 use std::path::Path;
 
-/// The built-in scenes that log polynomials.
+/// Returns the built-in scenes that log polynomials.
 fn stages() -> Vec<Stage> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2");
     let mut files: Vec<_> = std::fs::read_dir(&folder)
@@ -27,7 +27,7 @@ fn stages() -> Vec<Stage> {
     stages
 }
 
-/// The number of forgeries of each scene.
+/// Tries the given number of changes of each scene, and returns the results that are not allowed.
 fn faults(of_each: u64, attempt: fn(&Stage, &mut Random) -> Option<String>) -> Vec<String> {
     let mut faults = Vec::new();
     for (number, stage) in stages().iter().enumerate() {

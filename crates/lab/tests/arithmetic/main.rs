@@ -1,6 +1,6 @@
-//! Right programs in other arithmetic, on scenes whose traces hold states: the fair rules accept them with room to
-//! spare, and reject noise. `--nocapture` prints the shares of the tolerances that they use. With `FOSSSIM_CORPUS`, a
-//! course's own scenes are tried as well.
+//! Right programs with other arithmetic, on scenes whose traces contain states: the fair rules accept them with a large
+//! margin, and reject noise. `--nocapture` prints the shares of the tolerances that they use. With `FOSSSIM_CORPUS`,
+//! the course's own scenes are tried as well.
 #![forbid(unsafe_code)]
 
 mod right;

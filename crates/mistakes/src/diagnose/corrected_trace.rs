@@ -87,8 +87,8 @@ mod tests {
         }
     }
 
-    /// From one scene alone, a loop that is one round short looks empty. All scenes together distinguish the two, and
-    /// the scene's explanation must follow them.
+    /// In one scene alone, a loop that runs one round too few looks empty. All scenes together distinguish the two, and
+    /// the scene's explanation must agree with them.
     #[test]
     fn a_scene_says_what_all_scenes_together_know() {
         let short = named("loop-one-fewer", &[], (7, 7));

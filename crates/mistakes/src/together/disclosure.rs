@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
-            // The first value that is not finite is a place and not a guess.
+            // The first value that is not finite has a place, and is not a guess.
             let end = NonFiniteValue { step: Some(3), stage: NanStage::Zones, is_nan: true, recovers: false };
             let end = Explanation { topic: ExplanationTopic::NotFinite(end), ..explanation() };
             assert_eq!(limit_explanations(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
@@ -142,7 +142,7 @@ mod tests {
             assert_eq!(part.examples.len(), full.examples.len());
             assert_eq!((&part.counts, part.wrong_steps, part.ruling), (&full.counts, full.wrong_steps, full.ruling));
         }
-        // The rule book whose verdict counts comes first.
+        // The rule book that decides the verdict comes first.
         assert_eq!(told(Hints::Full).official(), &full.parity);
         assert_eq!(all(Rules::Fair).official(), full.fair.as_ref().expect("asked"));
     }

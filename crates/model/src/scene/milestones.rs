@@ -115,7 +115,7 @@ mod tests {
         scene::read,
     };
 
-    /// Returns everything that programs of `assignment` do not know in a scene with these elements.
+    /// Returns everything in a scene with these elements that programs of `assignment` do not know.
     fn unknown(assignment: Assignment, integrator: &str, elements: &str) -> Vec<String> {
         let text = format!(
             "<scene><duration time=\"1\"/><integrator type=\"{integrator}\" dt=\"0.5\"/>{elements}\

@@ -1,11 +1,11 @@
-//! The strict reader's words about every kind of problem, and what it does not say twice.
+//! The strict reader's messages about every kind of problem, and the problems that it does not repeat.
 use super::{MAX_SCENE_BYTES, read};
 
 const START: &str = "<duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\n";
 const TWO: &str = "<particle px=\"0\" py=\"0\" vx=\"0\" vy=\"0\" m=\"1\" fixed=\"0\"/>\n\
                    <particle px=\"1\" py=\"0\" vx=\"0\" vy=\"0\" m=\"1\" fixed=\"1\"/>\n";
 
-/// The problems of a text, or `fine` and its warnings.
+/// Returns the problems of a text, or `fine` and its warnings.
 fn judged(text: &str) -> String {
     match read("x.xml", text.as_bytes()) {
         Ok(loaded) => loaded.warnings.iter().fold("fine".to_owned(), |all, warning| format!("{all}\n{warning}")),
@@ -122,7 +122,7 @@ fn names_that_do_not_exist() {
 
 #[test]
 fn what_was_probably_meant_is_not_missed() {
-    // Neither `no integrator`, nor `no px`, nor an index out of range follows from a slip in a name.
+    // A misspelled name causes no further messages such as `no integrator`, `no px` or an index out of range.
     assert_eq!(
         judged(
             "<scene><duration time='1'/><integratr type='explicit-euler' dt='1'/><edge i='0' j='1'/>\n\
@@ -176,7 +176,7 @@ fn what_is_there_twice() {
         "<dragdamping b='1' b='2'/>",
         "4:20: a second `b` of `dragdamping` (the original takes the first; remove one)",
     );
-    // The children of a second root are not judged.
+    // The children of a second root are not checked.
     assert_eq!(
         judged(&format!("<scene>{START}{TWO}</scene>\n<scene><particle/></scene>\n<foo/>")),
         "5:1: a second `scene` (only the first one counts; move its elements there or to another file)\n\
@@ -195,7 +195,7 @@ fn indices() {
         "4:10: `i` of edge 0 is -1, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
-    // An unreadable index says nothing about the other one.
+    // An unreadable index proves nothing about the other one.
     says("<edge i='x' j='0'/>", "4:10: `i` of edge 0 must be a number, not `x` (write a number such as `-1.5e-3`)");
     for (inner, words) in [
         (
@@ -422,7 +422,7 @@ fn broken_nesting() {
     says("<dragdamping b='1'></dragdampin>", "4:20: `</dragdampin>` closes nothing (open is `<dragdamping>`)");
     says("<dragdamping b='1'/></edge>", "4:21: `</edge>` closes nothing (open is `<scene>`)");
     says("</scene>", "4:9: `</scene>` closes nothing");
-    // After broken markup nothing is called missing or out of range.
+    // After broken markup, no element is reported as missing or out of range.
     assert_eq!(
         judged("<scene><duration time='1'/><edge i='0' j='1'/>"),
         "1:1: `<scene>` is never closed (end it with `/>` or with `</scene>`)"

@@ -186,7 +186,7 @@ mod tests {
         original::read(xml.as_bytes()).expect("a scene").scene
     }
 
-    /// The pairs that each pass checked.
+    /// Records the pairs that each pass checked.
     #[derive(Default)]
     struct Looked(Vec<Vec<(Pair, usize)>>);
 
@@ -226,7 +226,7 @@ mod tests {
     fn each_polynomial_of_a_step_finds_its_pair() {
         let scene = scene("<collision type=\"continuous-time\"/>");
         let pairs = pairs(&scene);
-        // Ten pairs of discs, fifteen less four of discs and edges, ten of discs and half-planes.
+        // There are ten pairs of discs, fifteen minus four of discs and edges, and ten of discs and half-planes.
         assert_eq!(pairs.counts(), PairKindMap::from([10, 6, 10]));
         assert_eq!(pairs.polynomial_count(), 2 * 10 + 4 * 6 + 2 * 10);
         let mut index = 0;

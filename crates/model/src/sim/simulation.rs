@@ -328,7 +328,8 @@ mod tests {
         assert!(log.lines.contains(&"miss".to_owned()));
     }
 
-    /// Both hits of one particle in a pass: the second is computed from the position after the first response.
+    /// Both hits of one particle are in the same pass: the second is computed from the position after the first
+    /// response.
     #[test]
     fn later_pairs_of_a_pass_see_earlier_responses() {
         let mut scene = scene(vec![

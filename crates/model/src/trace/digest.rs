@@ -183,7 +183,7 @@ mod tests {
     fn the_whole_digest_is_that_of_the_file() {
         let digests = Digests::from_stream(&[0; 100][..], LAYOUT);
         assert_eq!(digests.trailing_bytes, 4);
-        // The output of `head -c 100 /dev/zero | sha256sum`.
+        // This is the output of `head -c 100 /dev/zero | sha256sum`.
         let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
         assert_eq!(digests.sha256.to_string(), expected);
         let cut = Digests::from_stream(&[0; 50][..], LAYOUT);

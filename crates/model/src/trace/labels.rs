@@ -58,7 +58,7 @@ mod tests {
         let scene = original::read(xml).unwrap().scene;
         let before = Simulation::new(&scene, RootSearch::OnDemand).state().clone();
         let labels = collect_labels(&scene, &before);
-        // Three pairs of particles with two polynomials each, one particle near the edge with four.
+        // There are three pairs of particles with two polynomials each, and one particle near the edge with four.
         assert_eq!(labels.len(), 10);
         let edge: Vec<_> = labels.iter().filter(|label| label.pair.kind == PairKind::ParticleEdge).collect();
         assert_eq!(edge.iter().map(|label| label.number).collect::<Vec<_>>(), [0, 1, 2, 3]);

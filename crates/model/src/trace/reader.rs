@@ -205,7 +205,7 @@ mod tests {
     fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
         let layout = Layout { particles: 0, has_impulses: true, has_polynomials: true, steps: 0 };
         for list in [[0, i32::MAX, 0], [0, 1, 1 << 28]] {
-            // As many empty polynomials, or coefficients of one, as there are zero bytes.
+            // The list has as many empty polynomials, or coefficients of one polynomial, as there are zero bytes.
             let head = list.map(i32::to_le_bytes).concat();
             let endless = Read::chain(&head[..], std::io::repeat(0));
             let mut reader = Reader::new(endless, layout);

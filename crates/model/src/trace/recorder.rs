@@ -190,7 +190,7 @@ mod tests {
         assert!(expected.len() > 1 << 21, "{}", expected.len());
     }
 
-    /// The trace may have any length, and the buffer may be full anywhere in a step.
+    /// The trace may have any length, and the buffer may become full at any point of a step.
     #[test]
     fn memory_does_not_grow_with_the_trace() {
         let mut recorder = Recorder::start(io::sink(), layout(), &state(0.0));

@@ -64,14 +64,14 @@ mod tests {
     #[test]
     fn different_zeros_are_separated_even_if_of_different_size() {
         assert!(are_zeros_separated(&[1.0, -6.0, 11.0, -6.0]));
-        // (z - 1)(z - 1000)(z - 2)(z + 3000) and a pair at +-i.
+        // The zeros are those of (z - 1)(z - 1000)(z - 2)(z + 3000), and a pair at +-i.
         assert!(are_zeros_separated(&[1.0, 1997.0, -3_005_998.0, 9_004_000.0, -6_000_000.0]));
         assert!(are_zeros_separated(&[1.0, -10.0, 36.0, -60.0, 35.0, -50.0]));
     }
 
     #[test]
     fn multiple_zeros_are_not() {
-        // (z - 1)^2 (z + 2), the same with a change of 1e-12, and (z - 1)^2 (z - 2)(z - 3)(z - 4).
+        // The polynomials are (z - 1)^2 (z + 2), the same with a change of 1e-12, and (z - 1)^2 (z - 2)(z - 3)(z - 4).
         assert!(!are_zeros_separated(&[1.0, 0.0, -3.0, 2.0]));
         assert!(!are_zeros_separated(&[1.0, 1e-12, -3.0, 2.0]));
         assert!(!are_zeros_separated(&[1.0, -11.0, 45.0, -85.0, 74.0, -24.0]));

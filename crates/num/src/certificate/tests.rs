@@ -20,13 +20,13 @@ fn each_level_decides_what_it_is_made_for() {
         (&[&[-1.0, -0.5], &[1.0, 2.0]], Some(Level::Line)),
         (&[&[1.0, -2.0]], Some(Level::Line)),
         (&[&[1.0, -0.5]], None),
-        // Passing at a distance, and leaving behind.
+        // The bodies pass at a distance, or separate.
         (&[&[-1.0, 1.0, -1.0]], Some(Level::Parabola)),
         (&[&[1.0, 2.0, -4.0]], Some(Level::Parabola)),
         (&[&[1.0, 2.0, -2.0]], None),
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1.0, 2.0]], Some(Level::Bernstein)),
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1e-9, 1.0, 1.0, 1.0, 1.0]], Some(Level::Bernstein)),
-        // The zeros are far, because the leading coefficient is much smaller than the others.
+        // The zeros are far away, because the leading coefficient is much smaller than the others.
         (&[&[1e-12, 0.0, 0.1, -1e15]], None),
         // The original samples the gap after its first zero, -5.5, at the double zero -4.5, where rounding decides.
         (&[&[-4.0, -58.0, -279.0, -445.5]], None),
@@ -41,8 +41,8 @@ fn each_level_decides_what_it_is_made_for() {
 
 #[test]
 fn rounding_that_makes_the_original_report_an_impact_is_not_excluded() {
-    // A particle that creeps towards another one 500 away: the line's sample one step before its zero at 1e16 is
-    // rounding noise, and the original finds a collision at once.
+    // A particle slowly approaches another one at a distance of 500. The line's sample one step before its zero at 1e16
+    // is rounding noise, and the original immediately finds a collision.
     let (displacement, distance) = (0.01 * 2.442_999_999_999_999_6e-12, 500.0);
     let position = [-displacement * displacement, 2.0 * distance * displacement, 1.0 - distance * distance];
     let approach = [-displacement * displacement, displacement * distance];
@@ -56,7 +56,7 @@ fn a_search_that_may_not_end_is_never_excluded() {
     let never: &[f64] = &[-1.0];
     for bad in [f64::NAN, f64::INFINITY, 5e-324, 1e308] {
         assert!(!excludes_unit_interval(&list(&[never, &[1.0, bad, 3.0, -4.0]])), "{bad}");
-        // Degree two always returns.
+        // The search always returns for degree two.
         assert!(excludes_unit_interval(&list(&[never, &[1.0, bad, 3.0]])), "{bad}");
     }
     assert!(!excludes_unit_interval(&list(&[never, &[-3.0, 4.5, 0.0, -1.5, 5e-324]])));
@@ -78,7 +78,7 @@ fn values_that_are_no_numbers_exclude_nothing_by_themselves() {
     }
 }
 
-/// Numbers of very different sizes, with zeros, integers and powers of two among them.
+/// Returns numbers of very different sizes, including zeros, integers and powers of two.
 fn number() -> impl Strategy<Value = f64> {
     (-1.0..1.0_f64, -60..30_i32, 0..8_u8).prop_map(|(mantissa, exponent, kind)| match kind {
         0 => 0.0,
@@ -93,7 +93,7 @@ fn coefficients(length: impl Into<prop::collection::SizeRange>) -> impl Strategy
     prop::collection::vec(number(), length)
 }
 
-/// A polynomial that is a product of linear and quadratic factors near the step: zeros in tight places.
+/// Returns a product of linear and quadratic factors with zeros close together, near the step.
 fn product() -> impl Strategy<Value = Vec<f64>> {
     let zero = (-8..=24_i32, -1e-9..1e-9_f64, 0..3_u8)
         .prop_map(|(place, noise, exact)| f64::from(place) * 0.25 + if exact == 0 { 0.0 } else { noise });
@@ -122,7 +122,8 @@ proptest! {
         let excluded = closed_form::find_exclusion(&[a, b]).is_some();
         let set = positive_set(&[a, b]).expect("closed forms return");
         let meets = set.as_slice().iter().any(|interval| interval.hi > 0.0 && interval.lo <= 1.0);
-        // Positive before a zero at a positive time: left to the search, whatever rounding makes of it.
+        // The polynomial is positive before a zero at a positive time. The search decides this case, whatever the
+        // rounding.
         let left_out = a < 0.0 && b > 0.0;
         prop_assert!(excluded != meets || (left_out && !excluded));
     }

@@ -40,7 +40,7 @@ mod tests {
         assert!(are_short(&[0.0, -0.0], 0));
         assert!(are_short(&[0.5, -3.0, 0.0, 7.25], 5));
         assert!(!are_short(&[0.5, -3.0, 0.0, 7.25], 4));
-        // Each product is short, but not together with the other.
+        // Each product alone is short, but not both together.
         assert!(!are_short(&[1e9, 0.0625], 30));
         assert!(are_short(&[f64::MAX, f64::MIN], 53));
         assert!(!are_short(&[f64::MAX, 5e-324], 2000));

@@ -12,10 +12,10 @@ use proptest::test_runner::RngSeed;
 
 type Lists = Vec<Vec<f64>>;
 
-/// Polynomials, and if `tau` is at most 1, its value and whether they only touch.
+/// Polynomials; and if `tau` is at most 1, its value and whether they only touch.
 type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 
-/// The decision for coefficients whose terms add up to their modulus: bound = |value|.
+/// Returns the decision for coefficients whose terms add up to their modulus: bound = |value|.
 fn decided(lists: &[Vec<f64>], units: f64) -> CertifiedDecision {
     let bounded: Vec<Vec<BoundedValue>> =
         lists.iter().map(|list| list.iter().map(|&value| BoundedValue::from_rounded(value)).collect()).collect();
@@ -36,7 +36,8 @@ fn owned(lists: &[&[f64]]) -> Lists {
     lists.iter().map(|list| list.to_vec()).collect()
 }
 
-/// A particle at rest at the origin and one that passes: polynomials of collisions.md 2, with their bounds.
+/// Returns the polynomials of a particle at rest at the origin and a passing one, by collisions.md 2, with their
+/// bounds.
 fn particle_pair(x: [f64; 2], d: [f64; 2], reach: f64) -> [Vec<BoundedValue>; 2] {
     let [x0, x1, d0, d1] = [x[0], x[1], d[0], d[1]].map(BoundedValue::from_rounded);
     let (xx, xd, dd) = (x0 * x0 + x1 * x1, x0 * d0 + x1 * d1, d0 * d0 + d1 * d1);
@@ -50,32 +51,32 @@ fn decide_pair(pair: &[Vec<BoundedValue>; 2]) -> CertifiedDecision {
 
 #[test]
 fn particles_that_hit_miss_leave_and_graze() {
-    // From 3 away with speed 4: they touch when 1 is left, after half the step.
+    // From a distance of 3 with speed 4, the particles touch at distance 1, after half the step.
     let hit = decide_pair(&particle_pair([3.0, 0.0], [-4.0, 0.0], 1.0));
     assert_eq!(hit.certainty, HitCertainty::Hits);
     let [lo, hi] = hit.time.expect("a time");
     assert!(lo < 0.5 && 0.5 < hi && hi - lo < 1e-12, "{lo} {hi}");
     assert!(hit.margin > 1e12);
-    // Stopping short, leaving, and passing two radii off.
+    // The particle stops too early, moves away, or passes at a distance of two radii.
     let short = decide_pair(&particle_pair([3.0, 0.0], [-1.0, 0.0], 1.0));
     let leaving = decide_pair(&particle_pair([0.5, 0.0], [1.0, 0.0], 1.0));
     let passing = decide_pair(&particle_pair([-3.0, 2.0], [6.0, 0.0], 1.0));
     assert_eq!((short.certainty, short.time, short.level), (HitCertainty::Misses, None, Level::Range));
     assert_eq!((leaving.certainty, leaving.level), (HitCertainty::Misses, Level::Range));
     assert_eq!(passing.certainty, HitCertainty::Misses);
-    // Grazing, and arriving exactly at the end: a rounding decides.
+    // The particle grazes the other one, or arrives exactly at the end, so a rounding error decides.
     let graze = decide_pair(&particle_pair([-3.0, 1.0], [6.0, 0.0], 1.0));
     let arriving = decide_pair(&particle_pair([3.0, 0.0], [-2.0, 0.0], 1.0));
     assert_eq!((graze.certainty, graze.margin), (HitCertainty::Borderline, 0.0));
     assert_eq!(arriving.certainty, HitCertainty::Borderline);
     let [lo, hi] = arriving.time.expect("the earliest time");
     assert!(1.0 - 1e-12 < lo && lo <= hi && hi <= 1.0, "{lo} {hi}");
-    // Already overlapping and approaching.
+    // The particles already overlap and approach each other.
     let overlapping = decide_pair(&particle_pair([0.5, 0.0], [-1.0, 0.0], 1.0));
     assert_eq!((overlapping.certainty, overlapping.time), (HitCertainty::Hits, Some([0.0; 2])));
 }
 
-/// A decision near its limit changes from Yes over Borderline to No, and the margin counts the way there.
+/// A decision near its limit changes from Yes over Borderline to No, and the margin tells how far the limit is.
 #[test]
 fn the_margin_is_what_the_decision_survives() {
     let at = |gap: f64| decide_pair(&particle_pair([3.0 + gap, 0.0], [-2.0, 0.0], 1.0));
@@ -100,21 +101,21 @@ fn the_exact_examples() {
         (&[&[-1.0, 0.25]], Some((0.0, false))),
         (&[&[3.0]], Some((0.0, false))),
         (&[&[-3.0]], None),
-        // Starts at exactly 1, or beyond; ends at exactly 0.
+        // The intervals start at exactly 1 or later, or end at exactly 0.
         (&[&[1.0, -1.0]], Some((1.0, true))),
         (&[&[1.0, -1.0, 0.0]], Some((1.0, true))),
         (&[&[1.0, -1.25]], None),
         (&[&[-1.0, 0.0]], None),
-        // Positive after 0; the original has it nowhere positive.
+        // The polynomial is positive after 0, but counts as nowhere positive in the original.
         (&[&[1.0, 0.0]], Some((0.0, false))),
-        // Two sets that meet in a point, also with a point missing.
+        // The two sets have only one point in common, or not even that.
         (&[&[1.0, -0.5], &[-1.0, 0.5]], Some((0.5, true))),
         (&[&[1.0, -0.5], &[-1.0, 0.5], &[1.0, -1.0, 0.25]], Some((0.5, true))),
         (&[&[1.0, -0.5], &[-1.0, 0.5], &[-1.0, 1.0, -0.25]], None),
-        // Double zeros: no hole, no peak.
+        // A double zero makes no gap and no peak.
         (&[&[1.0, -1.0, 0.25]], Some((0.0, false))),
         (&[&[-1.0, 1.0, -0.25]], None),
-        // A touch comes first, an overlap later.
+        // The polynomials first touch, and later overlap.
         (&[&[1.0, -0.75, 0.125], &[16.0, -16.0, 3.0]], Some((0.0, false))),
         (&[&[-1.0, 1.0, -0.1875], &[16.0, -20.0, 4.0]], Some((0.25, true))),
         (&[&[1e-300, -1e300]], None),
@@ -154,7 +155,7 @@ fn each_decision_says_which_level_made_it() {
     assert_eq!(all.map(|lists| decided(&lists, 0.0).level), [Level::Range, Level::Range, Level::Exact]);
 }
 
-/// Zeros on a grid of quarters, a sign, and possibly a factor that is always positive.
+/// A polynomial with zeros on a grid of quarters, a sign, and possibly a factor that is always positive.
 #[derive(Debug, Clone)]
 struct Factored {
     zeros: Vec<i32>,
@@ -163,7 +164,7 @@ struct Factored {
 }
 
 impl Factored {
-    /// Integer coefficients of the product of `4 t - zero`, exact.
+    /// Returns the exact integer coefficients of the product of `4 t - zero`.
     fn coefficients(&self) -> Vec<f64> {
         let mut list = vec![if self.positive { 1.0 } else { -1.0 }];
         let mut times = |factor: &[f64]| {
@@ -179,20 +180,20 @@ impl Factored {
             times(&[4.0, -f64::from(zero)]);
         }
         if let Some(place) = self.bump {
-            // (4 t - place)^2 + 1
+            // This is (4 t - place)^2 + 1.
             times(&[16.0, -8.0 * f64::from(place), f64::from(place * place + 1)]);
         }
         list
     }
 
-    /// Whether it is positive at `eighth / 8`, which is not a zero.
+    /// Returns whether the polynomial is positive at `eighth / 8`, which is not a zero.
     fn is_positive(&self, eighth: i32) -> bool {
         let negative = self.zeros.iter().filter(|&&zero| eighth < 2 * zero).count();
         (negative % 2 == 0) == self.positive
     }
 }
 
-/// Positive somewhere in `(0, 1]` or touching there, by looking at all gaps of the grid.
+/// Returns where the polynomials are all positive or touch in `(0, 1]`, by testing all cells of the grid.
 fn grid_answer(polynomials: &[Factored]) -> Option<(i32, bool)> {
     let positive = |polynomial: &Factored, eighth| polynomial.is_positive(eighth);
     let open = |eighth| polynomials.iter().all(|polynomial| positive(polynomial, eighth));
@@ -217,16 +218,16 @@ fn factored() -> impl Strategy<Value = Factored> {
     )
 }
 
-/// Numbers of very different sizes, between `2^-reach` and `2^reach`, and zeros.
+/// Returns numbers of very different sizes, between `2^-reach` and `2^reach`, and zeros.
 fn number(reach: i32) -> impl Strategy<Value = f64> {
     (1.0..2.0_f64, -reach..=reach, -4..=4_i32).prop_map(|(mantissa, exponent, sign)| {
-        // In two steps, so that the result may be subnormal.
+        // There are two factors, so that the result may be subnormal.
         let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).unwrap_or(0) << 52);
         f64::from(sign.signum()) * mantissa * power(exponent / 2) * power(exponent - exponent / 2)
     })
 }
 
-/// Random, spread, grid, touching and nearly touching lists.
+/// Returns random, spread, grid, touching and nearly touching lists.
 fn lists() -> impl Strategy<Value = Lists> {
     let random = prop::collection::vec(-1.0..1.0_f64, 0..=6);
     let integers = prop::collection::vec((-6..7_i32).prop_map(f64::from), 0..=6);
@@ -259,7 +260,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Zeros on a grid: the exact answer is known by counting.
+    /// The zeros are on a grid, so counting gives the exact answer.
     #[test]
     fn exact_answers_on_a_grid(polynomials in prop::collection::vec(factored(), 1..=4)) {
         let lists: Lists = polynomials.iter().map(Factored::coefficients).collect();
@@ -287,14 +288,14 @@ proptest! {
         }
     }
 
-    /// More units never turn a decision round, and fewer never make it doubtful.
+    /// More units never reverse a decision, and fewer units never make it uncertain.
     #[test]
     fn decisions_are_monotone_in_the_units(lists in lists(), units in 0.0..1e6_f64) {
         let (loose, tight) = (decided(&lists, units), decided(&lists, units * 0.25));
         if loose.certainty == HitCertainty::Borderline {
             prop_assert_eq!(loose.margin, 0.0);
             prop_assert!(loose.time.is_some());
-            // The extreme choices, a little further out because the decision rounds outwards, answer differently.
+            // The extreme choices, enlarged a little because the decision rounds outwards, give different answers.
             let choice = |sign: f64| -> Lists {
                 let end = |value: &f64| value + sign * (units + 8.0) * UNIT_ROUNDOFF * value.abs() + sign * 1e-300;
                 lists.iter().map(|list| list.iter().map(end).collect()).collect()
@@ -327,7 +328,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Sizes from the subnormal numbers to the largest: overflow and underflow never make a wrong decision.
+    /// The sizes range from subnormal numbers to the largest: overflow and underflow never cause a wrong decision.
     #[test]
     fn extreme_sizes_are_decided_alike(
         lists in prop::collection::vec(
@@ -354,7 +355,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// A certain decision holds for 200 choices of coefficients within the bounds, the extreme ones among them.
+    /// A certain decision holds for 200 choices of coefficients within the bounds, including the extreme ones.
     #[test]
     fn certain_decisions_hold_for_all_choices(
         lists in lists(),
@@ -390,7 +391,7 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// Far from any limit the original's root finder says the same, except about `c t^m`.
+    /// Far from any limit the original's root finder gives the same answer, except for `c t^m`.
     #[test]
     fn clear_decisions_are_those_of_the_root_finder(
         lists in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 2..=6), 1..=4),

@@ -22,8 +22,8 @@ fn the_rotation_by_94_degrees_has_the_bits_of_the_specification() {
     assert_eq!(sin(angle).to_bits(), 0x3FEF_EC0B_6FC0_5F20);
 }
 
-/// On machines that have that library, with fused operations: the bits are its own. `FOSSSIM_ARGUMENTS` says how many
-/// arguments of each kind are tried.
+/// On machines with that library and with fused operations, the bits must be the same. `FOSSSIM_ARGUMENTS` sets how
+/// many arguments of each kind are tried.
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 #[test]
 fn the_bits_are_those_of_the_gnu_c_library() {
@@ -38,14 +38,15 @@ fn the_bits_are_those_of_the_gnu_c_library() {
         state ^= state << 17;
         state
     };
-    // Between 0 and 1.
+    // The number is between 0 and 1.
     let unit = |bits: u64| (bits >> 11) as f64 / 9_007_199_254_740_992.0;
     for _ in 0..count {
         let any = f64::from_bits(bits());
         let sign = if bits() & 1 == 0 { 1.0 } else { -1.0 };
         let small = sign * unit(bits());
         let around = |center: f64, width: f64| center + width * small;
-        // All bit patterns; turns; where subnormal and infinite results begin; the neighborhood of one.
+        // The arguments are all bit patterns, turns, the limits of subnormal and infinite results, and numbers near
+        // one.
         for x in [any, 4.0 * small, 1e3 * small, 1e9 * small, around(-720.0, 30.0), around(1.0, 0.1), 1e-309 * small] {
             for (name, ours, theirs) in
                 [("exp", exp(x), x.exp()), ("ln", ln(x), x.ln()), ("sin", sin(x), x.sin()), ("cos", cos(x), x.cos())]

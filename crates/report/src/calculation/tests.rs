@@ -10,7 +10,7 @@ fn text(integrator: &str, collision: &str, rest: &str) -> String {
     first_step(&scene, None, 1).expect("a result")
 }
 
-/// Asserts that a text has these lines, with one blank where it has several.
+/// Checks that a text has these lines. Several spaces count as one.
 fn assert_has(text: &str, lines: &[&str]) {
     let plain = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     for line in lines {
@@ -51,7 +51,7 @@ fn an_impact_has_its_impulse() {
     assert_has(&found, &["particles 0 and 1 collide at t = 1/3 with n = (1, 0)"]);
     assert_has(&found, &["J = -(1 + COR) (sum of w D.u) / (sum of w^2/m) = -1.5 * 6 / 1.5 = -6"]);
     assert_has(&found, &["0 (6, 0) 1 1 (-6, 0)", "1 (0, 0) -1 0.5 (3, 0)"]);
-    // The simulator's own result.
+    // This is the simulator's own result.
     assert_has(&found, &["0 (0, 0) (0, 0)", "1 (3, 0) (3.5, 0)"]);
     // Nothing is divided by zero.
     let held =
@@ -59,7 +59,7 @@ fn an_impact_has_its_impulse() {
     assert_has(&held, &["J = -(1 + COR) (sum of w D.u) / (sum of w^2/m) = 0, because all are fixed"]);
 }
 
-/// Scenes without forces, and forces that come to nothing, have a step, too.
+/// Scenes without forces, or with forces that sum to zero, also have a step.
 #[test]
 fn a_step_without_forces_is_computed() {
     let one = r#"<particle m="1" px="1" py="0" vx="2" vy="0" fixed="0"/>"#;

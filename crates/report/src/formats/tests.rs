@@ -1,4 +1,4 @@
-//! Checks every format against its schema, and as a snapshot that people read.
+//! Checks every format against its schema, and as a readable snapshot.
 use super::Format;
 use crate::grade::{add_warnings, csv_of_submissions, json_lines, samples};
 use crate::page::{Audience, GradePage};
@@ -30,7 +30,7 @@ fn assert_valid(name: &str, document: &str) {
     }
 }
 
-/// Reports contain no control characters except line breaks and tabs, for all outputs and names.
+/// Checks that reports contain no control characters except line breaks and tabs, for all outputs and names.
 fn assert_harmless(document: &str) {
     let bad: Vec<char> = document.chars().filter(|c| c.is_control() && !matches!(c, '\n' | '\t' | '\r')).collect();
     assert!(bad.is_empty(), "{bad:?} in\n{document}");
@@ -141,7 +141,7 @@ fn prairielearn_says_that_groups_which_are_not_shown_count() {
     assert!(document.contains("other tests are hidden") && !document.contains("points points"), "{document}");
 }
 
-/// A fact about the upload is said once, at the top, and not of each scene.
+/// A fact about the upload is stated once, at the top, and not for each scene.
 #[test]
 fn what_is_wrong_with_a_submission_itself_is_said_once() {
     let sentence = "the upload has no program called FOSSSim; it contains main.cpp, fosssim-sample";
@@ -184,7 +184,8 @@ fn an_untouched_template_is_told_in_ten_lines() {
     );
 }
 
-/// One scene confuses a loop that is one round short with an empty loop. No format shows what all scenes contradict.
+/// One scene confuses a loop that runs one round too few with an empty loop. No format shows explanations that all
+/// scenes together contradict.
 #[test]
 fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     let mut grade = samples::accepted_grade();
@@ -255,7 +256,7 @@ fn a_stopped_grading_has_points_in_no_format() {
     assert_eq!((&grade["points"], &grade["groups"][0]["points"]), (&serde_json::Value::Null, &serde_json::Value::Null));
     let scene = |number: usize| &grade["groups"][0]["scenes"][number]["points"];
     assert!(scene(0).is_number() && scene(1).is_null() && scene(2).is_null(), "{grade:#}");
-    // Gradescope would add up what the tests have.
+    // Gradescope would add up the points of the tests.
     let gradescope = json(Format::Gradescope);
     assert_valid("gradescope.schema.json", &gradescope.to_string());
     assert!(!gradescope.to_string().contains("\"score\""), "{gradescope:#}");

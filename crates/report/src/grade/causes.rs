@@ -83,7 +83,7 @@ mod tests {
     use super::{super::samples, *};
     use fosssim_findings::{Cause, result::BadTrace};
 
-    /// A program that never ends is stopped on some scenes, and is not run on the many that follow.
+    /// A program that never ends is stopped on some scenes, and is not run on the many later ones.
     #[test]
     fn the_first_cause_is_of_scenes_that_were_run() {
         let grade = samples::endless_grade();
@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(names, [vec!["Detection/a"], vec!["Detection/b", "Detection/c"]]);
     }
 
-    /// Bytes after the last record of every trace are one cause, although the fair rules accept them.
+    /// Additional bytes after the last record of every trace are one cause, although the fair rules accept them.
     #[test]
     fn wrong_scenes_on_which_the_rule_books_differ_can_share_a_cause() {
         let mut grade = samples::accepted_grade();

@@ -221,7 +221,7 @@ mod tests {
 
     #[test]
     fn what_differs_after_the_best_factor_is_marked() {
-        // t^1 is wrong, and all is scaled.
+        // The coefficient of t^1 is wrong, and all coefficients are scaled.
         assert_eq!(mark_differences(&[1.0, 2.0, 3.0], &[10.0, 25.0, 30.0]), [false, true, false]);
         assert_eq!(mark_differences(&[1.0, 2.0], &[2.0, 4.0]), [false, false]);
         assert_eq!(mark_differences(&[1.0, 2.0], &[-1.0, -2.0]), [true, true]);

@@ -159,7 +159,7 @@ mod tests {
     fn motions_are_exact_within_the_budget() {
         let small = evidence(11, 400, |k| (k as f64).sin());
         assert!(pack(&small, Precision::Budgeted).rounded.is_none());
-        // Noise can't be packed.
+        // Noise cannot be compressed.
         let large = evidence(200, 400, |k| (k as f64 * 12.9898).sin() * 43758.5453 % 1.0);
         let rounded = pack(&large, Precision::Budgeted);
         assert!(rounded.rounded.is_some());

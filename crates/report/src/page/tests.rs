@@ -54,7 +54,7 @@ fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
     student::record_trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
 }
 
-/// The essentials are text: without script, in print, and for who can't see pictures.
+/// The most important parts are text: without a script, in print, and for blind readers.
 #[test]
 fn the_essentials_need_no_script() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
@@ -68,7 +68,7 @@ fn the_essentials_need_no_script() {
     }
 }
 
-/// The text report and the page say the same of a trace that can't be followed: where, why, and what the books say.
+/// The text report and the page give the same place, reason and verdicts for a trace that cannot be read to its end.
 #[test]
 fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
@@ -94,8 +94,8 @@ fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
     }
 }
 
-/// A mistake in a response or in the failsafe shows where its step ends first. Polynomials of the passes behind it have
-/// right formulas, in both reports.
+/// A mistake in a response or in the failsafe is reported where its step ends first. The later polynomials have right
+/// formulas, in both reports.
 #[test]
 fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
     for (name, id) in [
@@ -128,7 +128,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
     assert!(html.contains("is not a trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
 
-/// A trace that was not kept whole is not compared with a whole run.
+/// A trace that was not stored completely is not compared with a complete run.
 #[test]
 fn a_proof_is_told_of_whole_traces_only() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
@@ -149,13 +149,13 @@ fn names_and_texts_that_look_like_markup_stay_text() {
     let hostile = "</script><script>alert(1)</script><img src=x onerror=alert(1)>\u{202e}'\"&";
     let html = page(&scene, hostile, hostile, &of_mistake(&scene, "pp-contact-reversed"));
     assert!(!html.contains("<script>alert") && !html.contains("<img") && !html.contains('\u{202e}'));
-    // The script, its data and nothing else.
+    // There are only the script and its data.
     assert_eq!(html.matches("<script").count(), 4);
     assert_eq!(html.matches("</script>").count(), 4);
     assert!(html.contains("&lt;/script&gt;&lt;script&gt;alert(1)"));
 }
 
-/// The policy allows the script and the style sheet that are there, by their digests, and nothing that needs more.
+/// The policy allows only the existing script and style sheet, by their digests.
 #[test]
 fn the_policy_fits_the_page() {
     let html = render_document("empty", "", script());
@@ -169,7 +169,7 @@ fn the_policy_fits_the_page() {
     assert!(script().len() + STYLE.len() < 84_000, "{}", script().len() + STYLE.len());
 }
 
-/// A failing scene of a course's size stays small enough to be mailed.
+/// A failing scene of a course's size gives a page that is small enough for mail.
 #[test]
 fn a_page_is_small() {
     let scene = asset("HolisticTests/crowd-of-twenty-balls.xml");
@@ -177,7 +177,7 @@ fn a_page_is_small() {
     assert!(html.len() < 700_000, "{}", html.len());
 }
 
-/// The motion that the viewer reads is the trace's, to the last bit.
+/// The motion that the viewer reads is exactly the trace's.
 #[test]
 fn the_motion_is_exact() {
     use base64::Engine;
@@ -187,14 +187,14 @@ fn the_motion_is_exact() {
     let packed = html.split_once("id=\"submission-0\">").and_then(|(_, rest)| rest.split_once('<')).expect("a block").0;
     let packed = base64::engine::general_purpose::STANDARD.decode(packed).expect("base64");
     let bytes = miniz_oxide::inflate::decompress_to_vec(&packed).expect("deflate");
-    // The first record is the start of the file; the last state that is kept is in the file, too.
+    // The first record is the start of the file, and the last stored state is also in the file.
     let state = 32 * scene.particles.len();
     assert_eq!(bytes[..state], trace[..state]);
     let last = &bytes[bytes.len() - state..];
     assert!(trace.windows(state).any(|window| window == last));
 }
 
-/// The card that is drawn of a wrong trace for readers of this level, and the whole result.
+/// Returns the card of a wrong trace for readers of this level, and the whole result.
 fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut rulings = StepRulings::default();
@@ -243,7 +243,7 @@ fn marking(hints: Hints) -> Marking {
     }
 }
 
-/// The wrong submission with these results.
+/// Returns the grade of the wrong submission with these results.
 fn wrong(results: Vec<SceneResult>, hints: Hints) -> Grade {
     Grade {
         groups: vec![with_results(marking(hints), results)],
@@ -253,7 +253,7 @@ fn wrong(results: Vec<SceneResult>, hints: Hints) -> Grade {
     }
 }
 
-/// The page of a submission with these results, all of which have the same card.
+/// Returns the page of a submission with these results, all of which have the same card.
 fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
     let grade = wrong(results, Hints::Full);
     GradePage { grade: &grade, card: &|_| card.cloned(), class: None, reader: Audience::Staff }.html()
@@ -325,7 +325,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
     }
 }
 
-/// Motions and outputs that have no room are left out, scene by scene, and the page says so.
+/// Motions and outputs without space are omitted, scene by scene, and the page contains a message.
 #[test]
 fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
     let scene = asset("HolisticTests/crowd-of-twenty-balls.xml");
@@ -381,7 +381,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
         assert!(article.contains(&format!("data-scene=\"{scene}\"")), "{scene}");
         assert_eq!(article.contains("<details class=\"scene\" open>"), number == 0, "{scene}");
     }
-    // Other scenes with its cause are folded behind it.
+    // Other scenes with the same cause are in a closed section after it.
     assert!(articles[0].contains("<details class=\"alike\"><summary>1 more scene with the same cause</summary>"));
     // Both the mistake and its group link to that scene, and a terminal names the same scene.
     let text = crate::formats::Format::Text.render(&[grade.clone()]);
@@ -392,7 +392,8 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     );
 }
 
-/// A wrong position that no known mistake explains is named before the polynomials that follow from it, in all formats.
+/// A wrong position that no known mistake explains is reported before the polynomials that follow from it, in all
+/// formats.
 #[test]
 fn a_wrong_position_is_named_before_the_polynomials_that_follow_from_it() {
     let (_, result) = drawn(&asset("ImpulsesTests/plastic-impacts.xml"), "gravity-missing", Hints::Full);
@@ -404,7 +405,7 @@ fn a_wrong_position_is_named_before_the_polynomials_that_follow_from_it() {
     fosssim_mistakes::together::reconcile_explanations(&mut grade);
     let html = GradePage { grade: &grade, card: &|_| None, class: None, reader: Audience::Staff }.html();
     assert!(html.contains("<h2>What differs</h2>") && !html.contains("<h2>Likely mistake"), "{html}");
-    // The card of the scene says the same as the head of the page.
+    // The card of the scene gives the same cause as the head of the page.
     assert!(!html.contains("No simple mistake"), "{html}");
     let words = "he first difference is a wrong position, which no known mistake explains.";
     assert!(html.contains(&format!("T{words}")), "{html}");
@@ -415,7 +416,7 @@ fn a_wrong_position_is_named_before_the_polynomials_that_follow_from_it() {
         assert!(report.contains(&format!("T{words}")), "{format:?}: {report}");
         assert!(!report.contains("No simple mistake"), "{format:?}: {report}");
     }
-    // The original's rules can reject a polynomial before.
+    // The original's rules may reject an earlier polynomial.
     let told = grade.groups[0].scenes[0].result.disclosure.as_mut().expect("a disclosure");
     let wrong = told.parity.examples.iter().find(|one| one.kind() == FindingKind::Coefficient).cloned();
     assert!(wrong.is_some(), "{told:?}");
@@ -477,7 +478,7 @@ fn a_student_s_page_has_no_hidden_group() {
     }
 }
 
-/// A course's words are next to their mistake or group. The link can be followed, and text is never markup.
+/// A course's words are next to their mistake or group. The link works, and text is never markup.
 #[test]
 fn a_course_adds_its_own_words() {
     let (_, result) =

@@ -73,7 +73,7 @@ fn details_are_what_is_told_and_nothing_else() {
     let mut counts = FindingCounts::default();
     counts.add(FindingKind::Position, 7);
     counts.add(FindingKind::SuperfluousCollision, 2);
-    // A kind that is found in damaged records alone has no example.
+    // A kind that occurs only in damaged records has no example.
     counts.add(FindingKind::Velocity, 1);
     let told = Disclosure {
         official: Book::Fair,

@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn closed_folders_are_opened_at_any_depth_and_can_then_be_removed() {
         let folder = tempfile::tempdir().unwrap();
-        // From the inside out, so that an ordinary user can do it as well.
+        // Folders are created from the inside out, so that an ordinary user can do it as well.
         let deep = folder.path().join("d/".repeat(300));
         std::fs::create_dir_all(&deep).unwrap();
         let mut closed = deep.components().as_path();

@@ -278,7 +278,7 @@ mod tests {
         let children: Vec<_> =
             (0..3).map(|_| std::process::Command::new("/bin/sleep").arg("1000").spawn().unwrap()).collect();
         let pids: Vec<i32> = children.iter().map(|child| child.id() as i32).collect();
-        // Each check finds one more process, as if it had just been forked.
+        // Each check finds another process, as if it had just been forked.
         let looks = std::cell::Cell::new(0);
         let found = stop_then_kill(|| {
             looks.set((looks.get() + 1).min(pids.len()));

@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn with_every_id_taken_a_run_waits_for_one() {
         let folder = tempfile::tempdir().unwrap();
-        // An id that no user has.
+        // No user has this id.
         let take = |patience| take_from_range(folder.path(), 4_000_000_000..4_000_000_001, patience);
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");

@@ -1,4 +1,4 @@
-//! Explanations with every sort of value, and the strangest numbers.
+//! Explanations with every kind of value, and with unusual numbers.
 use super::{Role, pair};
 use fosssim_mistakes::diagnose::{
     Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
@@ -13,7 +13,7 @@ use fosssim_student::{
     assignments::t2m2::{Input, Reading, Subject},
 };
 
-/// At least one of every sort.
+/// Returns at least one explanation of every kind.
 pub(super) fn all() -> Vec<Explanation> {
     let guesses = [
         Guess::List(ListGuess::ReversedNegated),

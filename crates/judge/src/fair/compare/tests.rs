@@ -1,6 +1,6 @@
 use super::*;
 
-/// Numbers from 0 to 1, always the same ones.
+/// Returns numbers from 0 to 1, the same ones in every run.
 fn numbers() -> impl FnMut() -> f64 {
     let mut seed = 1_u64;
     move || {
@@ -9,7 +9,7 @@ fn numbers() -> impl FnMut() -> f64 {
     }
 }
 
-/// The quick answer is the long one, bit for bit.
+/// The quick comparison gives the same result as the complete one, bit for bit.
 #[test]
 fn what_fits_at_once_is_what_a_close_look_says() {
     let mut next = numbers();
@@ -34,7 +34,8 @@ fn what_fits_at_once_is_what_a_close_look_says() {
     assert!(answered > 5000, "{answered}");
 }
 
-/// Polynomials that are right at once are right in a close look, too, and by the same factor except for round-off.
+/// Polynomials that the quick comparison accepts are also right in the complete one, with the same factor except for
+/// round-off.
 #[test]
 fn what_is_right_at_once_is_right() {
     let mut next = numbers();
@@ -95,8 +96,8 @@ fn the_wrong_coefficient_is_named_in_spite_of_a_factor() {
     assert!((expected - 6.6).abs() < 1e-12);
 }
 
-/// Polynomials that fit with no factor are wrong in a close look, too, whatever the hints; and more than half of the
-/// wrong ones fit with none.
+/// Polynomials that the quick comparison rejects for every factor are also wrong in the complete one, whatever the
+/// hints. The quick comparison rejects more than half of the wrong ones.
 #[test]
 fn what_fits_with_no_factor_is_wrong() {
     let mut next = numbers();
@@ -116,7 +117,7 @@ fn what_fits_with_no_factor_is_wrong() {
             logged[(next() * length as f64) as usize] += noise * factor.abs() * next();
         }
         if round % 4 == 0 {
-            // The course's library drops what is small.
+            // The course's library drops small leading coefficients.
             let dropped = 1.2e-12 * (next() - 0.5);
             expected[0].value = dropped / factor.abs();
             logged.remove(0);
@@ -140,7 +141,7 @@ fn one_part_in_a_billion_is_wrong_and_a_few_roundings_are_not() {
     assert!(compare(&right, &logged, &[1.0]).expect("round-off").tolerance_share > 0.0);
 }
 
-/// Small leading coefficients are dropped after scaling; others can't be missing.
+/// Small leading coefficients are dropped after scaling. Others may not be missing.
 #[test]
 fn only_small_leading_coefficients_may_be_missing() {
     let right = [1e-7, 2.2, -0.71].map(|value: f64| BoundedValue { value, bound: 8.0 * value.abs() });
@@ -148,7 +149,7 @@ fn only_small_leading_coefficients_may_be_missing() {
     assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
 }
 
-/// A program that divides polynomials by their size makes ordinary numbers of round-off.
+/// A program that divides polynomials by their size turns round-off into ordinary numbers.
 #[test]
 fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
     let right = [1e-16, 0.0].map(|value: f64| BoundedValue { value, bound: 1.0 });
@@ -159,7 +160,7 @@ fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
     assert!(compare(&right, &[f64::INFINITY, 1.0], &[1.0]).is_err());
 }
 
-/// Where nothing moves there is no round-off either.
+/// If nothing moves, there is no round-off either.
 #[test]
 fn what_is_exactly_zero_is_zero() {
     let right = [BoundedValue::from_exact(0.0); 2];
@@ -167,7 +168,8 @@ fn what_is_exactly_zero_is_zero() {
     assert!(compare(&right, &[1e-11], &[1.0]).is_err());
 }
 
-/// The trace's own states may have lost all numbers: then its polynomials have none, and that is no second error.
+/// The trace's own states may contain only NaN. Its polynomials then contain none either, and that is not a second
+/// error.
 #[test]
 fn no_number_stands_where_none_is_expected() {
     let (lost, kept) = (BoundedValue { value: f64::NAN, bound: f64::NAN }, BoundedValue::from_rounded(0.3));
@@ -183,7 +185,7 @@ fn no_number_stands_where_none_is_expected() {
 #[test]
 fn round_off_that_cancels_within_the_step_is_right() {
     let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| BoundedValue { value, bound: 4.0 * value.abs() });
-    // A hundred roundings of the quartic that is small on the whole step: t (t - 1/4) (t - 3/4) (t - 1).
+    // These are a hundred roundings of the quartic that is small in the whole step: t (t - 1/4) (t - 3/4) (t - 1).
     let small = [1.0, -2.0, 1.1875, -0.1875, 0.0];
     let turned = |size: f64| -> Vec<f64> {
         right.iter().zip(small).map(|(right, small)| right.value + size * UNIT_ROUNDOFF * small).collect()
@@ -200,7 +202,7 @@ fn garbage_of_constant_size_check() {
     assert!(compare(&parabola(), &[1.0; 9], &[1.0]).is_err());
 }
 
-/// Sums with which something may overflow or underflow on the way are not right at once, however well they fit.
+/// Sums that may overflow or underflow are not accepted by the quick comparison, even if they fit.
 #[test]
 fn extreme_sums_are_looked_at_closely() {
     let is_clear = |own: f64, logged: f64| Similarity::measure(&[own, -own], &[logged, -logged]).is_clear(true);

@@ -125,7 +125,7 @@ mod tests {
     use crate::{fair::formulas::BoundedPairMotion, samples::scene};
     use fosssim_model::sim::{Detection, Observer, RootSearch, Simulation};
 
-    /// Balls far from the origin, an edge and half-planes.
+    /// A scene with balls far from the origin, an edge and half-planes.
     const CROWD: &str = r#"<scene>
         <duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="hybrid" COR="0.7"/>
         <particle m="1" px="10" py="0" vx="3" vy="-1" fixed="0" radius="0.1"/>
@@ -136,7 +136,7 @@ mod tests {
         <halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
     </scene>"#;
 
-    /// The minimum ratio of the floors to the round-off.
+    /// The minimum ratio of the lower limits to the round-off.
     struct Closest<'a>(&'a Scene, f64);
 
     impl Observer for Closest<'_> {
@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// A polynomial above the floor always exceeds round-off, and the floor is not much larger than necessary.
+    /// A polynomial above the lower limit always exceeds round-off, and the limit is not much larger than necessary.
     #[test]
     fn what_says_something_is_above_round_off() {
         let scene = scene(CROWD);

@@ -1,4 +1,4 @@
-//! Traces that no program wrote in earnest: each shows what the fair rules must not fall for.
+//! Manipulated traces: each one tests something that the fair rules must not accept.
 use crate::{
     fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
@@ -14,7 +14,7 @@ use fosssim_model::{
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use std::path::Path;
 
-/// Built-in scenes with continuous-time detection, by name.
+/// Returns the built-in scenes with continuous-time detection, by name.
 #[expect(clippy::disallowed_methods, reason = "the built-in scenes are files")]
 fn assets() -> Vec<(String, Scene)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2");
@@ -34,8 +34,8 @@ fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
     *judge_by_both(scene, trace).fair.expect("the fair rules were asked")
 }
 
-/// A program whose polynomials are divided by powers of two: the course's library drops what becomes small, and the
-/// step goes on with the rest.
+/// A program that divides its polynomials by powers of two. The course's library drops the coefficients that become
+/// small, and the step continues with the others.
 struct Factors<F>(F, usize);
 
 impl<F: FnMut(usize, usize) -> i32> StepController for Factors<F> {
@@ -49,7 +49,7 @@ impl<F: FnMut(usize, usize) -> i32> StepController for Factors<F> {
     }
 }
 
-/// The largest distance of two runs' coordinates, as a share of the largest coordinate.
+/// Returns the largest distance between the coordinates of two runs, relative to the largest coordinate.
 fn distance(one: &[Frame], other: &[Frame]) -> f64 {
     let (mut most, mut size) = (0.0_f64, 0.0_f64);
     for (one, other) in one.iter().zip(other) {
@@ -60,8 +60,8 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
     most / size
 }
 
-/// Where factors change a decision, the trace is refused. Returns the number of scenes that they change. Factors
-/// are powers of two, so nothing is rounded, and no decision is borderline because of them.
+/// Checks that the trace is rejected if factors change a decision. Returns the number of scenes with changed decisions.
+/// Factors are powers of two, so nothing is rounded, and no decision is borderline because of them.
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;
     for (name, scene) in assets() {
@@ -84,7 +84,7 @@ fn a_small_factor_must_not_change_what_happens() {
 
 #[test]
 fn a_factor_of_each_polynomial_must_not_change_what_happens() {
-    // Factors from 2^-10 to 2^-41, in no order.
+    // The factors are between 2^-10 and 2^-41, in no order.
     let of_each = |_, count: usize| 10 + i32::try_from((count.wrapping_mul(0x9e37_79b9) >> 7) % 32).expect("small");
     assert!(no_loss_is_accepted(of_each) > 10);
     for number in 0..4 {
@@ -92,7 +92,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
     }
 }
 
-/// A factor near 1 changes nothing that matters.
+/// A factor near 1 changes nothing important.
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
@@ -101,7 +101,7 @@ fn ordinary_factors_are_accepted() {
     }
 }
 
-/// A ball that moves in the first step, and ends it in touch with a slope except for a rounding.
+/// A ball that moves in the first step and touches a slope at its end, except for a rounding error.
 const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>
@@ -116,8 +116,8 @@ impl StepController for Answer {
     }
 }
 
-/// A ball that strikes an edge at rest exactly at the end of the third step, in numbers with few digits: nothing is
-/// rounded, so that a missed collision is no borderline decision.
+/// A ball hits a resting edge exactly at the end of the third step. The numbers are short, so nothing is rounded, and a
+/// missed collision is not a borderline decision.
 #[test]
 fn an_impact_in_short_numbers_on_an_edge_at_rest_is_certain() {
     let text = r#"<scene><duration time="1"/><integrator type="symplectic-euler" dt="0.25"/>
@@ -141,7 +141,7 @@ fn an_impact_in_short_numbers_on_an_edge_at_rest_is_certain() {
     assert_eq!(fair(&scene, &write_frames(&scene, &simulate(&scene, ()))).verdict, FairVerdict::Accepted);
 }
 
-/// Whether the pair collides is borderline; with which normal and when is not.
+/// It is borderline whether the pair collides, but not with which normal and when.
 #[test]
 fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
@@ -168,7 +168,7 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     }
 }
 
-/// All polynomials of all steps are empty, except for one that has a factor. It shows nothing about the others.
+/// The polynomials of all steps are empty, except for one that has a factor. It proves nothing about the others.
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
@@ -190,7 +190,8 @@ fn one_factor_does_not_vouch_for_empty_logs() {
     }
 }
 
-/// Random coefficients of ordinary size, and one polynomial with so large a factor that they could be its round-off.
+/// The coefficients are random numbers of ordinary size, and one polynomial has such a large factor that they could be
+/// its round-off.
 #[test]
 fn a_large_factor_does_not_vouch_for_garbage() {
     for (name, scene) in assets() {
@@ -209,7 +210,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
     }
 }
 
-/// Factors that the rules do not accept as factors.
+/// These are factors that the rules do not accept.
 #[test]
 fn what_is_no_positive_number_is_no_factor() {
     let scene = scene(BOUNCE_SCENE);
@@ -225,13 +226,13 @@ fn what_is_no_positive_number_is_no_factor() {
     }
 }
 
-/// A ball that leaves a half-plane, and another one that is far away.
+/// A scene with a ball that moves away from a half-plane, and another ball far away.
 const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-euler" dt="0.5"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0.3" py="0.5" vx="0.1" vy="1" fixed="0" radius="0.25"/>
     <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
 
-/// Polynomials that hang on factors are charged in the steps where they stand.
+/// Polynomials that depend on factors are reported in their own steps.
 #[test]
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
@@ -240,7 +241,7 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let first = judged.findings.first_divergence.expect("the first empty polynomial");
     assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
     assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
-    // The fourth step's end is wrong as well, but the empty polynomial of the second step still comes first.
+    // The end of the fourth step is wrong as well, but the empty polynomial of the second step comes first.
     let judged = fair(
         &scene,
         &change_trace(&scene, |frames| {
@@ -257,14 +258,14 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
 
 const NOWHERE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e-160, 0.0];
 
-/// A run that is lost in its first step, and does nothing wrong afterwards, because nothing is left to be right.
+/// The run loses all numbers in its first step. Afterwards it does nothing wrong, because no value can be right.
 #[test]
 fn steps_that_lead_nowhere_are_never_right() {
     for text in [BOUNCE_SCENE, ZONES_SCENE] {
         let scene = scene(text);
         for value in NOWHERE {
             if text == BOUNCE_SCENE && value.abs() < 1.0 {
-                // One ball alone may be anywhere near.
+                // A single ball may be anywhere in the neighborhood.
                 continue;
             }
             let forged = change_trace(&scene, |frames| {
@@ -282,7 +283,7 @@ fn steps_that_lead_nowhere_are_never_right() {
     }
 }
 
-/// A single record that is lost spoils the step to it and the step from it.
+/// A single record without numbers makes both the step before it and the step after it wrong.
 #[test]
 fn a_lost_record_spoils_two_steps() {
     let scene = scene(
@@ -302,7 +303,7 @@ fn a_lost_record_spoils_two_steps() {
     }
 }
 
-/// The record in the middle of a step logs the passes before it, no more and no fewer, also where nothing else tells.
+/// The mid record of a step logs exactly the passes before it, even if nothing else shows this.
 #[test]
 fn the_mid_record_logs_the_passes_before_it() {
     for (name, scene) in assets() {
@@ -329,7 +330,7 @@ fn the_mid_record_logs_the_passes_before_it() {
     }
 }
 
-/// Where the scene itself leads nowhere, a trace that gets there is right.
+/// If the scene itself leads to NaN, a trace with the same NaN is right.
 #[test]
 fn the_references_own_way_is_right_wherever_it_leads() {
     let scene = scene(
@@ -343,8 +344,8 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
-/// Balls that rest on each other: every approach is zero except for round-off. A trace in which all of them go the
-/// other way shows nothing.
+/// Balls rest on each other, so every approach polynomial is zero except for round-off. A trace in which all signs are
+/// the opposite proves nothing.
 #[test]
 fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let ball = |x: f64| format!(r#"<particle m="1" px="{x}" py="0.3" vx="0.1" vy="0.3" fixed="0" radius="0.6"/>"#);
@@ -366,7 +367,7 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
 
-/// Notes which polynomials of each step belong to pairs that a response has moved before.
+/// Records which polynomials of each step belong to pairs that an earlier response has moved.
 struct Moved<'a> {
     context: Context<'a>,
     is_moved: Vec<bool>,
@@ -390,7 +391,7 @@ impl Observer for Moved<'_> {
     }
 }
 
-/// A program that leaves out what has collided in this step: the polynomials of its pairs stay empty.
+/// The program skips the bodies that have collided in this step, so the polynomials of their pairs are empty.
 #[test]
 fn what_a_response_has_moved_is_not_left_out() {
     let mut told = 0;
@@ -420,8 +421,8 @@ fn what_a_response_has_moved_is_not_left_out() {
     assert!(told > 5, "{told}");
 }
 
-/// An edge that turns under a ball, and another one that is stretched along its line, on which a ball lies: there the
-/// right form vanishes, and the course's has a tiny t^3.
+/// A scene with an edge that turns under a ball, and another edge that is stretched along its line, with a ball on it.
+/// For the second edge the right form is zero, and the course's form has a tiny t^3 coefficient.
 const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explicit-euler" dt="0.1"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>
@@ -432,7 +433,8 @@ const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explic
     <particle m="1" px="0.4" py="7" vx="0.1" vy="0.3" fixed="0" radius="0.1"/>
     <edge i="0" j="1" radius="0.1"/><edge i="3" j="4" radius="0.1"/></scene>"#;
 
-/// The two forms of the approach differ only in t^3, and a small factor makes the library drop that coefficient.
+/// The two forms of the approach polynomial differ only in t^3, and a small factor makes the library drop this
+/// coefficient.
 #[test]
 fn what_is_gone_is_no_mixture_of_forms() {
     struct Edges(f64);
@@ -457,8 +459,7 @@ fn what_is_gone_is_no_mixture_of_forms() {
     }
 }
 
-/// In the first round of a hybrid step nothing has been moved, whatever has collided: who has a wrong formula there is
-/// told so.
+/// In the first round of a hybrid step no response has moved a body, so a wrong formula is reported there.
 #[test]
 fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
     let mut told = 0;
@@ -470,7 +471,7 @@ fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
         simulate(&scene, &mut moved);
-        // The polynomials of pairs that have collided before, in the first pass of their step.
+        // These are the polynomials of pairs that have collided before, in the first pass of their step.
         let trace = change_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];
@@ -489,7 +490,7 @@ fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
     assert!(told > 20, "{told}");
 }
 
-/// Behind a response fixed particles are where they were, without any round-off: what is zero then is nothing else.
+/// After a response, fixed particles are at their old places without round-off, so a zero polynomial must stay zero.
 #[test]
 fn fixed_particles_are_not_moved_by_a_response() {
     let scene = scene(
@@ -509,7 +510,7 @@ fn fixed_particles_are_not_moved_by_a_response() {
     assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected);
 }
 
-/// Decides about the pair with the edge as the reference does not.
+/// Makes the opposite of the reference's decision about the pair with the edge.
 struct OtherWay;
 
 impl StepController for OtherWay {
@@ -517,19 +518,19 @@ impl StepController for OtherWay {
         match decision {
             _ if pair.kind != PairKind::ParticleEdge => decision,
             Decision::Hit { .. } => Decision::Miss { time: ImpactTime::None },
-            // From the ball to its nearest point of the edge.
+            // The normal goes from the ball to its nearest point of the edge.
             Decision::Miss { .. } => Decision::Hit { time: 0.0, normal: Vec2::new(0.6, -0.8) },
         }
     }
 }
 
-/// A ball ends a step of `simple` at a point of a slanted edge, as near as rounding allows: both decisions are right,
-/// and a contact has the normal of this point.
+/// A ball ends a step of `simple` at a point of a slanted edge, as near as rounding allows. Both decisions are right,
+/// and the normal of a contact must fit this point.
 #[test]
 fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
     let mut decided = [0, 0];
     for off in -3_i32..=3 {
-        // Two fifths along the edge from the origin to (4, 3), and the radii's sum away from it.
+        // The ball is two fifths along the edge from the origin to (4, 3), at a distance equal to the sum of the radii.
         let (x, y) = (1.6 - 0.6 + f64::from(off) * f64::EPSILON, 1.2 + 0.8);
         let text = format!(
             r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>
@@ -556,7 +557,7 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
     assert!(decided.iter().all(|count| *count > 0), "{decided:?}");
 }
 
-/// Nothing has collided before the first step.
+/// No collision happens before the first step.
 #[test]
 fn the_initial_record_has_no_lists() {
     let scene = scene(BOUNCE_SCENE);

@@ -5,10 +5,10 @@ use crate::{
 };
 use fosssim_model::trace::Frame;
 
-/// Numbers at which arithmetic overflows, underflows, or has left the numbers.
+/// Numbers that overflow, underflow or are not finite.
 const EXTREMES: [f64; 9] = [1e100, -1e100, 1e155, 1e-160, 5e-324, f64::MAX, f64::NAN, f64::INFINITY, f64::NEG_INFINITY];
 
-/// All coordinates and velocities of some records become one number.
+/// Sets all coordinates and velocities of some records to one number.
 fn blown_up(frames: &mut [Frame], from: usize, to: usize, value: f64) {
     for frame in &mut frames[from..to] {
         frame.state.positions.fill(value);
@@ -16,7 +16,7 @@ fn blown_up(frames: &mut [Frame], from: usize, to: usize, value: f64) {
     }
 }
 
-/// A simulation that blows up within a step: its records are absurd, its polynomials still small.
+/// The simulation diverges within a step: its records contain extreme numbers, while its polynomials are still small.
 #[test]
 fn states_of_any_size_are_judged_without_a_panic() {
     for text in [BOUNCE_SCENE, ZONES_SCENE] {

@@ -1,4 +1,4 @@
-//! Programs of the contest that leave pairs out, or add them twice.
+//! Programs of the contest that omit pairs, or count them twice.
 use crate::{
     finding::{FindingDetail, FindingKind},
     replay::{Options, judge},
@@ -9,7 +9,7 @@ use fosssim_model::{
     sim::PairKind,
 };
 
-/// Balls in rows, each near some of the others. They repel each other within 1.05.
+/// Returns a scene with balls in rows, each near some of the others. They repel each other within a distance of 1.05.
 fn pile(radius: f64) -> Scene {
     let thickness = 1.05 - 2.0 * radius;
     let ball = |index: u32| {
@@ -28,12 +28,12 @@ fn pile(radius: f64) -> Scene {
     scene::read("scene", text.as_bytes()).expect("a scene").scene
 }
 
-/// The trace of a program that applies the force of each pair to its two balls as often as `times` says.
+/// Returns the trace of a program that applies the force of each pair to its two balls `times` times.
 fn trace(scene: &Scene, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
     trace_within(scene, 1.05, times)
 }
 
-/// Returns the trace of a program that applies forces of balls that are nearer than `reach`.
+/// Returns the trace of a program that applies only the forces of balls that are nearer than `reach`.
 fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
     let mut x: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.position.x, ball.position.y]).collect();
     let mut v: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.velocity.x, ball.velocity.y]).collect();
@@ -71,7 +71,7 @@ fn judged(times: impl Fn(usize, usize) -> [f64; 2]) -> Judgement {
     *judge(&scene, &trace(&scene, times)[..], &options, &mut ()).fair.expect("the fair rules were asked")
 }
 
-/// The counts of named pairs, and of positions and velocities that nothing explains.
+/// Returns the counts of named pairs, and of positions and velocities without an explanation.
 fn counts(fair: &Judgement) -> [u64; 2] {
     let count = |kind| fair.findings.counts.get(kind);
     [count(FindingKind::PairForce), count(FindingKind::Position) + count(FindingKind::Velocity)]
@@ -83,7 +83,7 @@ fn forces_may_be_summed_in_any_order() {
     assert_eq!((fair.verdict, counts(&fair)), (FairVerdict::Accepted, [0, 0]), "{fair:?}");
 }
 
-/// The original leaves out bodies whose layers alone are near, others do not.
+/// The original omits bodies whose layers alone are near. Other programs may include them.
 #[test]
 fn forces_of_a_layer_alone_may_be_left_out() {
     let scene = pile(0.5);

@@ -1,4 +1,4 @@
-//! Traces in all ways of being right and wrong: by the short way and the long one.
+//! Traces that are right or wrong in many ways, judged by the fast path and the full path.
 use crate::{
     options::Options,
     replay,
@@ -6,7 +6,7 @@ use crate::{
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
-/// A ball next to a half-plane, so far from the origin that the original rejects its own polynomials.
+/// A scene with a ball next to a half-plane, so far from the origin that the original rejects its own polynomials.
 const LARGE: &str = r#"<scene>
     <duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="continuous-time" COR="1"/>
     <particle m="1" px="0" py="7654321.123" vx="0" vy="-1" fixed="0" radius="0.25"/>
@@ -14,7 +14,8 @@ const LARGE: &str = r#"<scene>
     <halfplane px="0" py="0" nx="0.37" ny="1.23"/>
 </scene>"#;
 
-/// An edge that turns while balls hit it and each other, so that both forms of its approach polynomials differ.
+/// A scene with an edge that turns while balls hit it and each other, so that both forms of its approach polynomials
+/// differ.
 const SPIN: &str = r#"<scene>
     <duration time="0.8"/><integrator type="explicit-euler" dt="0.1"/>
     <collision type="continuous-time" COR="0.7"/>
@@ -25,7 +26,7 @@ const SPIN: &str = r#"<scene>
     <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.3" nx="0.1" ny="1"/>
 </scene>"#;
 
-/// Returns the results of both ways as text, because texts with NaN can be compared.
+/// Returns the results of both paths as text, because texts with NaN can be compared.
 fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
     [false, true].map(|one_by_one| {
         let options =
@@ -36,13 +37,13 @@ fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
 
 type Change = fn(&mut Vec<Frame>);
 
-/// Coefficients that are off by some roundings, each in its own direction.
+/// Returns coefficients that are off by some rounding errors, each in its own direction.
 fn rounded(own: &[f64], roundings: f64) -> Vec<f64> {
     let signs = [1.0, -1.0, 0.5, 1.0, -0.5, -1.0];
     own.iter().zip(signs).map(|(c, sign)| c * (1.0 + sign * roundings * f64::EPSILON)).collect()
 }
 
-/// Coefficients with this factor, as the course's library keeps them.
+/// Returns coefficients with this factor, as the course's library keeps them.
 fn lost(own: &[f64], factor: f64) -> Vec<f64> {
     own.iter().map(|c| factor * c).skip_while(|c| c.abs() < 1e-12).collect()
 }
@@ -80,16 +81,16 @@ fn both_ways_say_the_same_to_the_last_field() {
                 own.iter().map(|c| if index == 0 { f64::NAN } else { c * 1.25 }).collect()
             })
         },
-        // Other roundings, in one polynomial or in all of them.
+        // This changes the rounding errors of one polynomial, or of all.
         |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 1.0))),
         |frames| frames[2..4].iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 40.0))),
-        // Factors with which leading coefficients are lost, here and there or everywhere.
+        // These factors make the library drop leading coefficients, in some polynomials or in all.
         |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| lost(own, 1e-12))),
         |frames| {
             let small = |index: usize, own: &[f64]| lost(own, if index.is_multiple_of(3) { 1e-11 } else { 1.0 });
             frames.iter_mut().for_each(|frame| replace_polynomials(frame, small));
         },
-        // A polynomial that differs in the mid record only.
+        // One polynomial differs, only in the mid record.
         |frames| replace_polynomials(&mut frames[1], |index, own| rounded(own, if index == 1 { 1.0 } else { 0.0 })),
         |frames| {
             frames
@@ -111,9 +112,8 @@ fn both_ways_say_the_same_to_the_last_field() {
     }
 }
 
-/// Two balls far apart that move alike: their relative motion is round-off, from which the root finder makes a
-/// collision with some factors and none with others. None is what the reference has, and no program misses anything
-/// then.
+/// Two distant balls move alike. Their relative motion is round-off, from which the root finder makes a collision with
+/// some factors and none with others. The reference has none, and the program misses no real collision.
 #[test]
 fn what_only_the_root_finder_sees_is_no_missed_collision() {
     let scene = scene(
@@ -137,7 +137,7 @@ fn what_only_the_root_finder_sees_is_no_missed_collision() {
     }
 }
 
-/// To search all roots changes no verdict, by either book.
+/// Searching all roots changes no verdict, in either rule book.
 #[test]
 fn audited_searches_judge_the_same() {
     let changes: [Change; 4] = [

@@ -83,7 +83,7 @@ mod tests {
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
     use fosssim_student::{Student, assignments::probe_scenes, record_trace};
 
-    /// A mistake that is not tried on a scene would leave the right trace of the scene.
+    /// A mistake that is not tried on a scene would not change the right trace of the scene.
     #[test]
     fn what_a_scene_can_not_show_leaves_its_trace_as_it_is() {
         let mut left_out = 0;

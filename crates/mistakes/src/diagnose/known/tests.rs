@@ -1,4 +1,4 @@
-//! Traces with mistakes, made in memory, and what is said of them.
+//! Traces with mistakes, created in memory, and their explanations.
 use super::{find_known, mistake_is_visible};
 use crate::diagnose::is_named_in;
 use crate::diagnose::{ExamplePlace, Explanation, ExplanationTopic, explain, explain_together};
@@ -10,7 +10,7 @@ use fosssim_model::{
 };
 use fosssim_student::{self as student, Student, find};
 
-/// Two balls that meet, an edge that swings about its fixed end, and a half-plane.
+/// A scene with two balls that meet, an edge that swings about its fixed end, and a half-plane.
 const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"symplectic-euler\" dt=\"0.05\"/>\
     <collision type=\"continuous-time\" COR=\"0.8\"/><simplegravity fx=\"0\" fy=\"-1\"/>\
     <particle m=\"1\" px=\"-1\" py=\"0.1\" vx=\"2\" vy=\"0\" fixed=\"0\" radius=\"0.3\"/>\
@@ -66,7 +66,8 @@ fn correct_variants_are_never_accused() {
     }
 }
 
-/// A crashed, killed or timed-out program that is right as far as it came is right.
+/// If a program crashes, is killed or reaches its time limit, and its trace is right up to that point, the trace counts
+/// as right.
 #[test]
 fn a_right_trace_that_breaks_off_is_not_explained() {
     let trace = student::record_trace(&scene(), Student::default()).expect("a trace");
@@ -91,7 +92,7 @@ fn another_scenes_trace_is_asked_about_only() {
     }
 }
 
-/// The right approach is accepted; the mistake behind it is found all the same.
+/// The right approach polynomial is accepted, and the mistake after it is still found.
 #[test]
 fn a_right_approach_hides_no_mistake() {
     for id in ["decision-never", "pe-square-no-eh", "response-sign", "pp-no-two"] {
@@ -132,7 +133,7 @@ fn damaged_traces_are_read_as_far_as_they_go() {
         assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
         assert!(length < 1000 || keys.len() == 1, "cut at {length}");
     }
-    // The trace has nonsense in every place. An explanation is not required, but the search must end.
+    // The trace contains nonsense at every position. An explanation is not required, but the search must end.
     for place in (0..trace.len()).step_by(trace.len() / 23) {
         let mut damaged = trace.clone();
         damaged[place] ^= 0xff;
@@ -140,7 +141,7 @@ fn damaged_traces_are_read_as_far_as_they_go() {
     }
 }
 
-/// The scene with impulse rounds, impact zones and several discs at once.
+/// Returns the scene with impulse rounds, impact zones and several discs at once.
 fn hybrid() -> Scene {
     let text =
         SCENE.replace("type=\"continuous-time\" COR=\"0.8\"", "type=\"hybrid\" COR=\"0.8\" maxiters=\"1\"").replace(
@@ -156,7 +157,8 @@ fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// If a program makes all of these mistakes, explanations name each of them, or list it as indistinguishable.
+/// Checks that if a program makes all of these mistakes, explanations name each of them, or list it as
+/// indistinguishable.
 fn are_named(scene: &Scene, ids: &[&str]) {
     let found = explain(scene, &made(scene, ids));
     assert_eq!(found.len(), ids.len(), "{ids:?}: {found:#?}");
@@ -180,7 +182,7 @@ fn half_done_work_with_a_mistake_has_both() {
     are_named(&scene(), &["ph-empty", "response-sign"]);
 }
 
-/// Programs are made of any two rows: none of them may bring the search down.
+/// Programs combine any two rows: no combination may crash the search.
 #[test]
 fn an_empty_detection_goes_with_every_other_mistake() {
     for row in student::CATALOGUE.iter().filter(|row| row.kind != student::RowKind::Hostile) {
@@ -216,7 +218,7 @@ fn a_right_scene_speaks_against_what_it_would_show() {
 
 #[test]
 fn mistakes_of_several_scenes_are_settled_together() {
-    // Scenes of one program, each of which shows another part of what it lacks.
+    // The scenes belong to one program, and each shows another missing part.
     let said = |ids: &[&str]| {
         let mut explanations = explain(&scene(), &made(&scene(), ids));
         explanations.iter_mut().for_each(|one| one.contradicted_keys.clear());
@@ -239,7 +241,7 @@ fn mistakes_of_several_scenes_are_settled_together() {
     assert_eq!(found, ["pp-no-two", "response-sign"]);
 }
 
-/// States from which the reference's rounds of impulses never end, in the scene's own terms: it is given up.
+/// The reference's rounds of impulses never end from these states, so the program gives up.
 #[test]
 fn a_trace_that_leads_nowhere_is_left() {
     let text = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>

@@ -1,4 +1,4 @@
-//! Searches with mistakes by request, in the scenes of the contest's suite.
+//! Searches with artificial mistakes, in the scenes of the contest's suite.
 use super::{pair_traits, traits};
 use crate::diagnose::{Explanation, ExplanationTopic, PairCounts, WrongPairs, explain, explain_together};
 use fosssim_model::{
@@ -15,7 +15,7 @@ fn scenes() -> Vec<Scene> {
     paths.map(|path| original::read(&fs::read(path).expect("a file")).expect("a scene").scene).collect()
 }
 
-/// Returns the explanations of all traces of a program with this mistake, which is in the search.
+/// Returns the explanations of all traces of a program with this mistake in its search.
 fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
     let student = Student::new(find(id).map(|row| row.mistake));
     let explained = |scene: &Scene| explain(scene, &record_trace(scene, student).expect("a trace"));
@@ -61,7 +61,7 @@ fn wrong_pairs_are_told_with_what_they_have_in_common() {
     }
 }
 
-/// A search that is not written yet leaves what the same scene without collisions leaves.
+/// A missing search gives the same states as the scene without collisions.
 #[test]
 fn no_pair_of_any_kind_is_found_without_a_search() {
     let mut told: Vec<Explanation> = Vec::new();
@@ -82,7 +82,7 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
     assert!(PairKind::ALL.iter().all(|kind| kinds.iter().any(|one| one.kind == *kind && one.counts_by_times[0] > 0)));
 }
 
-/// A trait is no cause if there are hardly any right pairs to compare with.
+/// A property is not a cause if there are hardly any right pairs for comparison.
 #[test]
 fn a_trait_without_right_pairs_is_not_told() {
     let traits_of = |[wrong, right, with]: [u64; 3]| {

@@ -1,4 +1,4 @@
-//! Several traces heard together, over made-up lists of what each says.
+//! Explanations of several traces together, with artificial explanations for each trace.
 use crate::{
     diagnose::is_named_in,
     diagnose::{
@@ -48,7 +48,7 @@ fn stage(fault: StageFault) -> Explanation {
     )
 }
 
-/// The words of all heads, each with the number of traces that agree.
+/// Returns the statements of all explanations, each with the number of traces that agree.
 fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
     let heads = explain_together(traces.iter().map(Vec::as_slice), &[]);
     let count = |head: &Explanation| traces.iter().filter(|list| is_named_in(head, list)).count();
@@ -85,7 +85,8 @@ fn the_words_are_the_majority_s_and_the_count_is_of_those_who_agree() {
     assert_eq!(heads(&traces), words(&[(&direction, 15), (&plane, 4)]));
 }
 
-/// With equal radii, half of their sum is one of them. The scenes with other radii show which of the two is used.
+/// With equal radii, half of their sum is equal to one radius. The scenes with other radii show which of the two the
+/// program uses.
 #[test]
 fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     let half = letter(Subject::ParticleOverlap, "half");
@@ -126,7 +127,7 @@ fn what_most_traces_speak_against_is_not_told() {
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
 }
 
-/// A known formula is tried on every trace: an eighth as many that it does not reproduce deny it, even where no trace
+/// A known formula is tried on every trace. If an eighth as many traces contradict it, it is dropped, even if no trace
 /// reports it first.
 #[test]
 fn a_known_formula_is_denied_by_an_eighth_as_many_traces() {
@@ -141,7 +142,7 @@ fn a_known_formula_is_denied_by_an_eighth_as_many_traces() {
     assert_eq!(heads(&traces), [("unexplained".to_owned(), 11)]);
 }
 
-/// A formula that a few traces deny is not the head's guess either.
+/// A formula that some traces contradict is also not the guess of the common explanation.
 #[test]
 fn the_guess_of_a_head_is_denied_by_an_eighth_as_many_traces() {
     let found = PolynomialEvidence::Guess(Guess::Named("no-radius".into()));
@@ -152,7 +153,7 @@ fn the_guess_of_a_head_is_denied_by_an_eighth_as_many_traces() {
     assert_eq!(heads(&traces), [("unexplained".to_owned(), 12)]);
 }
 
-/// Where only the stage is known, or among many traces, one trace fits a known mistake by chance.
+/// If only the stage is known, or among many traces, one trace fits a known mistake by chance.
 #[test]
 fn a_known_mistake_of_one_trace_is_no_second_one() {
     let behind = stage(StageFault::FirstRound);
@@ -161,7 +162,7 @@ fn a_known_mistake_of_one_trace_is_no_second_one() {
     assert_eq!(heads(&traces).len(), 1, "{:?}", heads(&traces));
 }
 
-/// Wrong traces of the same stage contradict a mistake that would show in them: eight to one is too few.
+/// Wrong traces of the same stage contradict a mistake that would be visible in them: one trace in eight is too few.
 #[test]
 fn traces_of_the_same_stage_contradict_a_mistake() {
     let scenes = probe_scenes(Assignment::T2M2);
@@ -185,7 +186,7 @@ fn traces_of_the_same_stage_contradict_a_mistake() {
     assert!(refuted(3, &fault(of_rounds)).is_empty(), "another stage");
 }
 
-/// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace
+/// If traces show the same mistake in different forms, the common explanation gives their common part, and each trace
 /// keeps its form.
 #[test]
 fn forms_that_differ_have_their_polynomial_in_common() {
@@ -213,7 +214,7 @@ fn what_is_told_second_is_not_told_once_more() {
     assert!(told.contains(&(cut.statement(), 7)), "{told:?}");
 }
 
-/// One trace in which a stage looks wrong follows from the formula that the others name.
+/// If a stage looks wrong in only one trace, the error follows from the formula that the other traces name.
 #[test]
 fn a_stage_of_one_trace_is_no_second_mistake() {
     let first = letter(Subject::EdgeOverlap, "a");
@@ -223,7 +224,7 @@ fn a_stage_of_one_trace_is_no_second_mistake() {
     assert_eq!(heads(&traces), words(&[(&first, 5)]));
 }
 
-/// A trace that needs two mistakes is not explained by the one that the others name.
+/// A trace that needs two mistakes is not explained by the single mistake that the others name.
 #[test]
 fn what_a_trace_needs_besides_is_told() {
     let (spring, drag) = (row("spring-no-rest-length", &[]), row("drag-mass", &[]));
@@ -232,14 +233,14 @@ fn what_a_trace_needs_besides_is_told() {
     assert_eq!(heads(&traces), words(&[(&spring, 4), (&drag, 1)]));
 }
 
-/// Two mistakes are rivals where they explain the same traces, not as many.
+/// Two mistakes are alternatives only if they explain the same traces, not if they explain the same number of traces.
 #[test]
 fn mistakes_of_different_traces_are_no_rivals() {
     let (one, other) = (row("loop-one-more", &[]), row("failsafe-no-rotation", &[]));
     let told = explain_together([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
     assert_eq!(told.len(), 2, "{told:#?}");
     assert!(told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
-    // Mistakes that explain a trace only together are no rivals either.
+    // Mistakes that explain a trace only together are not alternatives either.
     let told = explain_together([[one.clone(), other.clone()].as_slice()], &[]);
     assert!(told.len() == 2 && told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
     // A trace that allows both mistakes lists both.
@@ -250,7 +251,8 @@ fn mistakes_of_different_traces_are_no_rivals() {
     assert_eq!((told.len(), told[0].same_as.len()), (1, 0), "one trace knows which: {told:#?}");
 }
 
-/// A program has one contact vector for each kind of pair: what another trace says of it is no second mistake.
+/// A program has one contact vector for each kind of pair, so another trace's explanation of it is not a second
+/// mistake.
 #[test]
 fn a_contact_vector_has_one_mistake() {
     let told_beside = |first: &str, second: &str| {
@@ -262,7 +264,7 @@ fn a_contact_vector_has_one_mistake() {
     assert_eq!(told_beside("pe-contact-nearest-end", "ph-contact-at-start").len(), 2, "another kind of pair");
 }
 
-/// All traces together name the mistake that each of them allows among others.
+/// All traces together name the mistake that each of them allows.
 #[test]
 fn forms_are_intersected_over_traces() {
     let of = |forms: [&str; 2]| {
@@ -277,7 +279,7 @@ fn forms_are_intersected_over_traces() {
     assert!(traces.iter().all(|list| is_named_in(&told[0], list)));
 }
 
-/// Detections of which every coefficient is zero are not written yet, as the loop is.
+/// If every coefficient of a detection is zero, the detection is not written yet. The same holds for the loop.
 #[test]
 fn what_the_starter_leaves_is_not_written_yet() {
     let zero = |subjects: &[Subject]| {
@@ -300,7 +302,7 @@ fn an_empty_stage_has_rivals_too() {
     assert_eq!((told.len(), told[0].key.as_str(), &told[0].same_as[..]), (1, "geometric-empty", &[rival][..]));
 }
 
-/// A mistake that right traces speak against makes room for another one, with the exact form of that.
+/// If right traces contradict a mistake, another one is reported, with its own exact form.
 #[test]
 fn another_mistake_has_its_own_exact_form() {
     let all = Explanation {

@@ -10,7 +10,7 @@ mod not_finite;
 mod probes;
 mod states;
 
-/// A mistake found in all polynomials, and again in the steps that no other mistake touches, is one mistake, not two.
+/// A mistake in all polynomials, which is also found in the steps without other mistakes, is one mistake, not two.
 #[test]
 fn a_mistake_beside_another_is_told_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));
@@ -33,7 +33,7 @@ fn a_mistake_beside_another_is_told_once() {
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
 
-/// With another integrator the polynomials are right for the positions that it predicts.
+/// With another integrator, the polynomials are right for the positions that it predicts.
 #[test]
 fn polynomials_of_other_predicted_positions_are_no_mistake() {
     let row = student::find("linear-missing").expect("it is known");
@@ -75,7 +75,7 @@ fn one_of_many_traces_makes_no_stage_empty() {
     assert_eq!(keys(&traces)[0], "failsafe-empty");
 }
 
-/// In one scene a zone is moved, in another one nothing is: the failsafe is not empty.
+/// In one scene the program moves a zone, in another one nothing: the failsafe is not empty.
 #[test]
 fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     let scenes = probe_scenes(Assignment::T2M2);
@@ -96,7 +96,7 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }
 
-/// If a trace is too long to be kept, its beginning is explained, and the report does not call it too short.
+/// If a trace is too long to be stored, its beginning is explained, and the report does not call it too short.
 #[test]
 fn a_trace_that_was_kept_in_part_is_explained() {
     let row = student::find("pe-radius-not-squared").expect("it is known");

@@ -89,7 +89,7 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
             continue;
         }
         let right = frames(&scene);
-        // Steps whose geometric part moves something: the end is another state than the middle.
+        // These are the steps whose geometric part moves a body: the end state differs from the mid state.
         let Some(end) = (2..right.len()).step_by(2).find(|&end| right[end].state != right[end - 1].state) else {
             continue;
         };
@@ -114,7 +114,7 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
     assert!(seen > 2, "{seen}");
 }
 
-/// A value in one record alone was not made by a step, or made nothing of the next one.
+/// A value in only one record was not made by a step, or did not affect the next one.
 #[test]
 fn numbers_that_are_finite_again_are_told_as_such() {
     let struck = Scene { duration: 3.0, ..scene("edges-struck") };

@@ -1,4 +1,4 @@
-//! The probe scenes show what they are for, and a correct program passes on all of them.
+//! Each probe scene shows its mistakes, and all probe scenes accept a correct program.
 use fosssim_judge::{
     self as judging,
     fair::{FairVerdict, Judgement},
@@ -25,14 +25,14 @@ fn both_readers_give_the_scenes_back() {
     }
 }
 
-/// The detections of a kind, as they showed.
+/// The values of the detections of a kind.
 #[derive(Default)]
 struct Seen {
-    /// Per kind and polynomial the greatest modulus per coefficient, from the lowest power.
+    /// The greatest modulus of each coefficient, by kind and polynomial, from the lowest power.
     greatest: PairKindMap<[[f64; 6]; PairKind::MAX_POLYNOMIALS]>,
-    /// Hits per kind.
+    /// The number of hits per kind.
     hits: PairKindMap<usize>,
-    /// A coefficient that is no integer, or too great to be exact.
+    /// A coefficient that is not an integer, or too large to be exact.
     inexact: Option<f64>,
 }
 
@@ -92,7 +92,7 @@ fn every_kind_of_pair_collides() {
     }
 }
 
-/// The trace of a student's program; none if it would never end.
+/// Returns the trace of a student's program, or `None` if it would never end.
 fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
     student::record_trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
@@ -106,7 +106,7 @@ fn is_accepted(scene: &Scene, trace: &[u8]) -> bool {
     judged(scene, trace).verdict == FairVerdict::Accepted
 }
 
-/// Whether nothing is found but decisions that hang on coefficients which the course's library dropped.
+/// Returns whether the only findings are decisions that depend on coefficients which the course's library dropped.
 fn loses(scene: &Scene, trace: &[u8]) -> bool {
     let counts = judged(scene, trace).findings.counts;
     counts.total() > 0 && counts.get(judging::FindingKind::TrimmedDecision) == counts.total()
@@ -119,7 +119,7 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
         .iter()
         .filter(|row| row.kind == RowKind::Wrong && !matches!(row.area, Area::Trace | Area::Process))
         .filter(|row| {
-            // Where the mistake makes the program go on forever, there is no whole trace to accept.
+            // If the mistake makes the program run forever, there is no complete trace to accept.
             scenes.iter().all(|(_, scene)| trace(scene, Some(row)).is_some_and(|trace| is_accepted(scene, &trace)))
         })
         .map(|row| row.id)
@@ -127,8 +127,8 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// Nothing in the probe scenes depends on round-off, nor on which correct formula is used, save where a small factor
-/// makes the course's library drop what a decision depends on.
+/// The probe scenes do not depend on round-off or on the choice of correct formula, except if a small factor makes the
+/// course's library drop coefficients that affect a decision.
 #[test]
 fn correct_programs_are_accepted_in_every_probe_scene() {
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).map(Some);

@@ -55,7 +55,7 @@ fn positions_that_do_not_follow_from_velocities_are_told_with_their_factor() {
     assert!((factor - 2.5).abs() < 1e-9);
 }
 
-/// Radii are in the test of overlap only.
+/// Only the test of overlap uses radii.
 #[test]
 fn collisions_of_bodies_that_are_apart_are_told() {
     let trace = right(&scene(&BALLS.replace("radius=\"0.3\"", "radius=\"0.36\"")));
@@ -64,7 +64,7 @@ fn collisions_of_bodies_that_are_apart_are_told() {
     assert!(told.len() == 1 && told[0].topic == ExplanationTopic::Stage(fault), "{told:#?}");
 }
 
-/// The changes of states in one scene may follow from the mistake that another one names.
+/// The changes of states in one scene may follow from the mistake that another scene names.
 #[test]
 fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
     let scene = scene(FALL);

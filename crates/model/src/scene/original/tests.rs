@@ -1,4 +1,4 @@
-//! The original's words about every kind of problem, and what it lets pass.
+//! The original's messages about every kind of problem, and the problems that it ignores.
 use super::{OriginalScene, Rejection, RejectionKind, read};
 use crate::assignments::Integrator;
 use crate::scene::model::{Collision, CollisionDetection, Force};

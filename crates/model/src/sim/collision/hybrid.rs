@@ -143,7 +143,7 @@ mod tests {
         sim::{Observer, RootSearch, Simulation, Zone},
     };
 
-    /// The zones of each geometric round of each step.
+    /// Records the zones of each geometric round of each step.
     #[derive(Default)]
     struct Rounds(Vec<Vec<Vec<Vec<u32>>>>);
 
@@ -158,7 +158,7 @@ mod tests {
         }
     }
 
-    /// Rows of discs that a fast disc pushes together: each round moves a zone against the next disc.
+    /// A fast disc pushes rows of discs together: each round moves a zone against the next disc.
     #[test]
     fn rounds_go_on_until_no_zone_grows() {
         let xml = include_bytes!("../../../../../assets/t2m2/GeometricTests/rows-collected-over-many-rounds.xml");

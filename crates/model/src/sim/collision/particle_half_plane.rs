@@ -70,7 +70,7 @@ mod tests {
         samples::{fixed_copy, half_plane, particle, scene},
     };
 
-    /// The example of trace-format.md 3.
+    /// This is the example of trace-format.md 3.
     #[test]
     fn the_annotated_example() {
         let (x, d) = (Vec2::new(0.0, 0.5), Vec2::new(0.0, -0.5));

@@ -124,7 +124,7 @@ mod tests {
         }
     }
 
-    /// The penalty force has no Hessian, so the iterates enter and leave the layer forever.
+    /// The penalty force has no Hessian, so the iteration enters and leaves the layer forever.
     #[test]
     fn an_endless_iteration_is_an_error() {
         let mut scene =

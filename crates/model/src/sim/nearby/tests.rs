@@ -9,7 +9,7 @@ use crate::sim::{
 };
 use fosssim_num::vector::length;
 
-/// Leaving out the square root never changes the outcome of the distance test, at and around equality.
+/// Omitting the square root never changes the result of the distance test, at and around equality.
 #[test]
 fn the_early_way_out_agrees_with_the_test_by_length() {
     let mut numbers = NumberSource(1);
@@ -24,7 +24,7 @@ fn the_early_way_out_agrees_with_the_test_by_length() {
     }
 }
 
-/// Bodies of many sizes at all scales, some at the same places, some nowhere.
+/// Returns bodies of many sizes at all scales, some at the same places, some at NaN.
 fn crowd(seed: u64) -> (Scene, f64) {
     let mut numbers = NumberSource(seed);
     let pick = |numbers: &mut NumberSource, count: f64| ((numbers.next() + 1.0) / 2.0 * count) as usize;
@@ -59,7 +59,7 @@ fn positions(scene: &Scene) -> Vec<f64> {
     scene.particles.iter().flat_map(|particle| [particle.position.x, particle.position.y]).collect()
 }
 
-/// Whether two bodies are as near as forces ask, by the operations of a force.
+/// Returns whether two bodies are near enough for a force, by the operations of the force.
 fn is_near(scene: &Scene, margin: f64, pair: Pair) -> bool {
     let place = |particle: usize| scene.particles[particle].position;
     let (first, second) = (pair.first as usize, pair.second as usize);
@@ -72,7 +72,7 @@ fn is_near(scene: &Scene, margin: f64, pair: Pair) -> bool {
             let edge = scene.edges[second];
             let (x1, x2, x3) = (place(first), place(edge.first), place(edge.second));
             let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-            // A force keeps a NaN, and a response uses 0 instead.
+            // A force keeps NaN, and a response uses 0 instead.
             [alpha, if alpha.is_nan() { 0.0 } else { alpha }]
                 .iter()
                 .any(|&alpha| length((x2 + alpha.clamp(0.0, 1.0) * (x3 - x2)) - x1) < (radius + edge.radius) + margin)
@@ -116,7 +116,7 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
     assert!(near_pairs > 20_000, "{near_pairs}");
 }
 
-/// Balls of one size at one density, a few large ones, and walls around them.
+/// Returns a scene of balls of one size and density, a few large ones, and walls around them.
 fn box_of(balls: u32) -> Scene {
     let mut numbers = NumberSource(u64::from(balls));
     let half = 0.5 * (f64::from(balls) / 150.0).sqrt();
@@ -144,7 +144,7 @@ fn the_work_grows_with_the_number_of_balls() {
     assert!(few < 16 && many < 8, "{few} and {many} tests a ball");
 }
 
-/// A chain across the plane: each edge looks at what lies along it, not at all that its rectangle holds.
+/// In a long chain of edges, each edge tests the objects along its line, not all objects in its bounding rectangle.
 #[test]
 fn a_long_edge_looks_at_what_lies_along_it() {
     let mut scene = box_of(20_000);

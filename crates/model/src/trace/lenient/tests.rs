@@ -30,7 +30,7 @@ fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).unwrap();
         assert!(frame.is_cut() && frame.logged_polynomials == 60_000 && frame.note.is_none(), "{limit}");
-        // The polynomials in the window are decoded at one go.
+        // All polynomials in the buffer are decoded at once.
         assert!(decode::memory_bytes(&frame.polynomials) <= limit + 4 * super::super::source::WINDOW_BYTES);
         let kept: Vec<&[f64]> = frame.polynomials.iter().collect();
         assert_eq!(kept, list[..kept.len()]);
@@ -70,7 +70,7 @@ fn record(polynomials: &[&[f64]]) -> Vec<u8> {
     writer.finish().unwrap().0
 }
 
-/// Reads one record, and gives the frame and what reading another one stops at.
+/// Reads one record. Returns the frame and the reason why reading the next one stops.
 fn read(bytes: &[u8]) -> (LenientFrame, ReadStop) {
     let mut reader = LenientReader::from_slice(bytes, LAYOUT);
     let mut frame = LenientFrame::default();
@@ -98,7 +98,8 @@ fn a_cut_coefficient_keeps_the_high_order_bytes_of_the_one_before() {
     let bytes = record(&[&[a, b]]);
     let (frame, _) = read(&bytes[..8 + 4 + 8 + 3]);
     assert_eq!(frame.polynomials.get(0)[1].to_bits(), 0x3ff0_0000_0033_4444);
-    // Without one before, the other bytes are 0; what results is tiny here, hence dropped with all that follow.
+    // Without an earlier record, the other bytes are 0. The result is tiny here, so it is dropped with all following
+    // coefficients.
     let (frame, _) = read(&bytes[..8 + 4 + 7]);
     assert_eq!(frame.polynomials.get(0), [0.0; 0]);
     let (frame, _) = read(&record(&[&[f64::from_bits(0x00ff_0000_0000_0001)]])[..8 + 4 + 7]);
@@ -167,7 +168,7 @@ fn nonsense_counts_cost_no_memory() {
 #[test]
 fn endless_lists_end_at_the_limit() {
     let count = |count: i32| count.to_le_bytes();
-    // Impulses; empty polynomials; a polynomial of zeros, each dropped, and empty ones.
+    // The lists contain impulses, empty polynomials, a polynomial of zeros that are all dropped, and empty ones.
     let heads = [vec![count(i32::MAX)], vec![count(0), count(i32::MAX)], vec![count(0), count(i32::MAX), count(99)]];
     for head in heads {
         let head = head.concat();

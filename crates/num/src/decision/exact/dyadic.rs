@@ -79,9 +79,9 @@ mod tests {
 
     #[test]
     fn others_lie_between_neighbors() {
-        // 2^60 + 1 over 2^61: just above one half.
+        // This is 2^60 + 1 over 2^61, just above one half.
         assert_eq!(dyadic("1152921504606846977", 61).enclosure(), [0.5, 0.5_f64.next_up()]);
-        // 2^54 - 1 over 2^54 rounds up to 1.
+        // This is 2^54 - 1 over 2^54, which is rounded up to 1.
         assert_eq!(dyadic("18014398509481983", 54).enclosure(), [1.0_f64.next_down(), 1.0]);
         let [lo, hi] = dyadic("5", 1080).enclosure();
         assert!(lo == 0.0 && hi > 0.0);

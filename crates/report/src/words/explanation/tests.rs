@@ -1,4 +1,4 @@
-//! Tests all sentences that explanations can contain.
+//! Tests all sentences of explanations.
 use super::*;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
@@ -45,7 +45,7 @@ fn guesses() -> Vec<Guess> {
         .collect()
 }
 
-/// Wrong changes of states.
+/// Returns wrong changes of states.
 fn changes() -> [WrongChange; 4] {
     let change = WrongChange {
         quantity: Quantity::Position,
@@ -170,7 +170,7 @@ fn all() -> Vec<Explanation> {
     all
 }
 
-/// One line of the exact form of every sort.
+/// Returns one line of every kind of exact form.
 fn lines_of_all_sorts() -> Vec<Detail> {
     let subject = Subject::EdgeOverlap;
     let weight = |letters: &[&'static str], power| Weight {
@@ -256,8 +256,8 @@ fn every_finding_has_its_sentence() {
     insta::assert_snapshot!("lines", lines.join("\n"));
 }
 
-/// A known mistake is told by its row: the sentence, its exact form, and where to look, with the letters' meaning
-/// between.
+/// A known mistake is explained by its row: the sentence, its exact form, and where to search, with the letters'
+/// meaning between them.
 #[test]
 fn a_known_mistake_is_told_by_its_row() {
     let row = find("pe-square-no-eh").expect("a row");
@@ -286,7 +286,7 @@ fn advice_on_a_step_fits_its_mistake() {
     }
 }
 
-/// Newton's method that diverges multiplies by 2^100, which is no number to read in 31 digits.
+/// Newton's method that diverges multiplies by 2^100. Nobody can read 31 digits of such a number.
 #[test]
 fn a_huge_ratio_has_six_digits() {
     let detail = stages::describe_detail(&StageDetail::Factor(1_267_650_600_228_229_401_496_703_205_376.0));

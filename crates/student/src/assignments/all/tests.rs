@@ -1,4 +1,4 @@
-//! The rows are well formed, and their sentences give nothing away.
+//! The rows are well formed, and their sentences reveal nothing.
 use std::collections::BTreeSet;
 
 use super::*;

@@ -1,5 +1,5 @@
-//! Mistakes of forces, integrators, the penalty force and simple responses, on the scenes of the milestones before and
-//! behind collisions.
+//! Mistakes in forces, integrators, the penalty force and simple responses, on the scenes of the milestones with and
+//! without collisions.
 use crate::diagnose::{
     Explanation, explain,
     known::{
@@ -14,13 +14,13 @@ use fosssim_model::{
 use fosssim_student::{self as student, Row, StepLog, Student, World, assignments::probe_scenes, find, step};
 use std::{collections::BTreeSet, fs, path::Path};
 
-/// Scenes of more bodies take long to be simulated with all mistakes.
+/// Scenes with more bodies take long to simulate with all mistakes.
 const MOST_PARTICLES: usize = 20;
 
 /// Scenes with more steps of an integrator that solves systems also take long.
 const MOST_STEPS: f64 = 8.0;
 
-/// The scenes of these milestones and their probe scenes, with their names.
+/// Returns the scenes of these milestones and their probe scenes, with their names.
 #[expect(clippy::disallowed_methods, reason = "the scenes of the suites belong to a crate above this one")]
 fn scenes() -> Vec<(String, Scene)> {
     let assets = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets");
@@ -47,7 +47,7 @@ fn scenes() -> Vec<(String, Scene)> {
             scene.duration = scene.duration.min(MOST_STEPS * scene.time_step);
         }
     }
-    // Programs of a milestone meet no scene that they can't run.
+    // The programs of a milestone only get scenes that they can run.
     let is_met = |name: &str, scene: &Scene| scene.assignments().any(|one| name.starts_with(one.key()));
     scenes.retain(|(name, scene)| scene.particles.len() <= MOST_PARTICLES && is_met(name, scene));
     scenes
@@ -68,14 +68,14 @@ fn names(told: &[Explanation], id: &str) -> bool {
     told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id))
 }
 
-/// Each row leaves a wrong trace of a scene of its milestone, of which it is named, and of the scenes before that one
-/// it is taken for no other.
+/// Each row gives a wrong trace of a scene of its milestone, and is named for it. In the scenes of earlier milestones
+/// no other mistake is named.
 #[test]
 fn every_mistake_of_states_is_named_and_taken_for_no_other() {
     let (mut named, mut asked, mut mistaken) = (BTreeSet::<&str>::new(), BTreeSet::new(), Vec::new());
     for (name, scene) in scenes() {
         let correct = trace(&scene, &[]);
-        // A mistake that shows only with the step before is none that one step makes.
+        // A mistake that depends on the previous step is not a mistake within one step.
         let is_of_step = |row: &&Row| is_state_mistake(row) && !row.id.ends_with("not-cleared");
         let rows: Vec<&Row> =
             applicable_rows(&scene).filter(is_of_step).filter(|row| !named.contains(row.id)).collect();
@@ -146,7 +146,7 @@ fn only_files_of_the_student_are_named() {
     }
 }
 
-/// Forces that are summed up over the steps show only with the step before.
+/// Forces that are summed over several steps are visible only together with the previous step.
 #[test]
 fn forces_that_are_not_cleared_between_steps_are_named() {
     let scene = scene("t1m1/two-fields-and-a-fixed-particle");
@@ -169,8 +169,8 @@ fn forces_that_are_not_cleared_between_steps_are_named() {
     assert!(told.len() == 1 && told[0].key == "explicit-velocities-not-cleared", "{told:#?}");
 }
 
-/// Other arithmetic, another one in each scene: forces summed in another order, products fused with sums, and states
-/// with the round-off of another solver.
+/// Each scene has another arithmetic: forces summed in another order, products fused with sums, or states with the
+/// round-off of another solver.
 #[test]
 fn correct_programs_of_these_milestones_are_accused_of_nothing() {
     for (index, (name, scene)) in scenes().into_iter().enumerate() {
@@ -187,7 +187,7 @@ fn correct_programs_of_these_milestones_are_accused_of_nothing() {
     }
 }
 
-/// The states of another solver.
+/// Returns the trace with the round-off of another solver.
 fn with_round_off(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     let is_state = !matches!(scene.collision, fosssim_model::scene::Collision::Simple { .. });
     let numbers = trace.chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight bytes")));

@@ -1,5 +1,5 @@
-//! The students of the catalogue on small random scenes: a mistake is explained by what it is, a correct variant not at
-//! all.
+//! The students of the catalogue on small random scenes: a mistake is explained correctly, and a correct variant is not
+//! explained at all.
 use super::{Numbers, PairKind, Sample, explain};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
@@ -54,7 +54,7 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
     }
 }
 
-/// Returns the number of polynomials that a student passes on for a pair.
+/// Returns the number of polynomials that a student returns for a pair.
 fn passed_on(row: &Row, kind: PairKind) -> usize {
     match row.id {
         "handover-position-only" => kind.polynomial_count() - 1,
@@ -63,7 +63,7 @@ fn passed_on(row: &Row, kind: PairKind) -> usize {
     }
 }
 
-/// The first detection pass of the first step in many small scenes.
+/// Returns the first detection pass of the first step in many small scenes.
 fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
     let mut numbers = Numbers(3);
     let mut samples = Vec::new();
@@ -116,8 +116,7 @@ fn concerns_polynomials(row: &Row) -> bool {
     areas.contains(&row.area) && !row.id.ends_with("-empty")
 }
 
-/// Correct variants that this engine would accuse if it were asked; whole explanations ask only where the judge finds
-/// something wrong.
+/// Correct variants that this search would report as wrong. It is used only if the judge finds an error.
 const ACCUSED_IF_ASKED: [&str; 4] =
     ["normalized-largest", "normalized-norm", "normalized-per-pair", "interpolated-all"];
 
@@ -131,7 +130,7 @@ fn correct_variants_are_not_accused() {
     }
 }
 
-/// Mistakes that take a value of another object into a formula: the pair alone does not show that.
+/// Mistakes that use a value of another object in a formula, which the pair alone does not show.
 const OF_OTHERS: [&str; 10] = [
     "pp-position-index",
     "pp-next-radius",
@@ -164,7 +163,7 @@ fn mistakes_of_the_catalogue_are_explained() {
     }
 }
 
-/// Where scenes are plain, some mistakes do not show; those that do are explained no less.
+/// In plain scenes some mistakes are not visible. The visible ones are explained as well as in other scenes.
 #[test]
 fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
     let hidden = [
@@ -182,7 +181,7 @@ fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
     }
 }
 
-/// The words fit the mistake, not only the numbers.
+/// The text fits the mistake, not only the numbers.
 #[test]
 fn explanations_say_what_the_catalogue_says() {
     for (id, key) in [

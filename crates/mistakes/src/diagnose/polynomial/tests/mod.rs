@@ -8,7 +8,7 @@ use fosssim_model::sim::{Pair, PairMotion, PointMotion};
 use fosssim_num::{polynomial::trim, vector::Vec2};
 use fosssim_student::assignments::t2m2::{Input, Inputs, Reading, formulas};
 
-/// Numbers without a pattern, the same in every run.
+/// A generator of numbers without a pattern, the same in every run.
 struct Numbers(u64);
 
 impl Numbers {
@@ -51,7 +51,7 @@ impl Numbers {
 
 type Lists = Vec<Vec<f64>>;
 
-/// Samples of one kind with what a student makes of them, trimmed as the course's library does.
+/// Returns samples of one kind with a student's polynomials, trimmed like in the course's library.
 fn samples(kind: PairKind, count: u32, student: impl Fn(&PairMotion) -> Lists) -> Vec<Sample> {
     let mut numbers = Numbers(11);
     (0..count)
@@ -108,8 +108,8 @@ fn quartic(l: &Letters) -> Vec<f64> {
     ]
 }
 
-/// The supplied quintic; with `slip` false the mathematically right one. `d` is an argument because one student
-/// confuses it.
+/// Returns the supplied quintic, or with `slip` false the mathematically right one. `d` is an argument because one
+/// student confuses it.
 fn quintic(l: &Letters, d: f64, slip: bool) -> Vec<f64> {
     let (a, b, c, e, f, g, h) = (l.g, l.h, l.i, l.e, l.a, l.b, l.c);
     let (i, j) = (-g, -h);
@@ -165,8 +165,7 @@ fn right_lists(motion: &PairMotion) -> Lists {
     }
 }
 
-/// The only explanation of what this student does; it has to reproduce everything and to have this key and such a
-/// detail.
+/// Checks that a student has only one explanation, which reproduces everything and has this key and a matching detail.
 fn only(
     kind: PairKind,
     key: &str,
@@ -182,12 +181,12 @@ fn only(
     one.clone()
 }
 
-/// Whether a line of its exact form is such a one.
+/// Returns whether a line of the exact form matches.
 fn has(one: &Explanation, is_told: impl Fn(&PolynomialDetail) -> bool) -> bool {
     one.details.iter().any(|detail| matches!(detail, Detail::Polynomial(detail) if is_told(detail)))
 }
 
-/// That the product of these letters has another weight in the coefficient of this power.
+/// Returns a test whether the product of these letters has another weight in the coefficient of this power.
 fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&PolynomialDetail) -> bool {
     move |detail| {
         let PolynomialDetail::Weight(weight) = detail else { return false };
@@ -202,7 +201,7 @@ fn stands(subject: Subject, letter: &'static str, stand: Substitute) -> impl Fn(
     move |detail| *detail == PolynomialDetail::StandsFor { reading, letter: letter.into(), stand: stand.clone() }
 }
 
-/// Exactly this.
+/// Returns a test for exactly this detail.
 fn is(told: PolynomialDetail) -> impl Fn(&PolynomialDetail) -> bool {
     move |detail| *detail == told
 }
@@ -236,7 +235,7 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
     assert_eq!(explain(&samples(PairKind::ParticleEdge, 300, student)), []);
 }
 
-/// Every formula of a polynomial gives the polynomial that the fair rules expect, including the right quintic.
+/// For each polynomial, every formula gives the polynomial that the fair rules expect, including the right quintic.
 #[test]
 fn the_tables_are_the_formulas_of_the_fair_rules() {
     let mut numbers = Numbers(5);
@@ -372,7 +371,7 @@ fn wrong_radii_are_named() {
     }
 }
 
-/// A mistake in the inputs shows in several polynomials, and is reported once.
+/// A mistake in the inputs appears in several polynomials, and is reported once.
 #[test]
 fn wrong_inputs_are_one_explanation_for_all_polynomials() {
     type Change = fn(&mut [PointMotion; 3]);
@@ -430,7 +429,7 @@ fn lists_handed_over_wrongly_are_named() {
             assert_eq!(found.len(), 1, "{key}: {found:#?}");
             assert_eq!((found[0].key.as_str(), found[0].reproduced), (key, found[0].samples), "{found:#?}");
         }
-        // NaN says nothing of a formula.
+        // NaN proves nothing about a formula.
         let nan = |motion: &PairMotion| right_lists(motion).iter().map(|list| vec![f64::NAN; list.len()]).collect();
         assert_eq!(explain(&samples(kind, 300, nan)), []);
     }
@@ -533,7 +532,8 @@ fn small_slips_in_quadratics_are_named() {
     );
 }
 
-/// A mistake that only half of the pairs show is told with its share; one that is no simple mistake is told as such.
+/// A mistake in only half of the pairs is reported with its share. An error that is no simple mistake is reported as
+/// such.
 #[test]
 fn what_is_not_reproduced_everywhere_says_so() {
     let partly = explain(&samples(PairKind::ParticleEdge, 300, |motion| {
@@ -580,7 +580,7 @@ fn hostile_samples_do_no_harm() {
     assert_eq!(explain(&[]), []);
 }
 
-/// The example has the roundest numbers, then the earliest step.
+/// The example has the shortest numbers, and then the earliest step.
 #[test]
 fn the_example_is_the_roundest_one() {
     let mut list = samples(PairKind::ParticleParticle, 50, |motion| {

@@ -1,4 +1,4 @@
-//! Lanes and single pairs, side by side.
+//! Compares computation in lanes with single pairs.
 use crate::{
     scene::{Collision, Scene},
     sim::{
@@ -7,7 +7,7 @@ use crate::{
     },
 };
 
-/// Keeps all that a step logs.
+/// Keeps all values that a step logs.
 #[derive(Default)]
 struct Log {
     polynomials: PolynomialBytes,
@@ -55,7 +55,7 @@ fn compare(scene: &Scene) -> u64 {
     lanes.search_counts().calls
 }
 
-/// Some particles, of which some rest, some are fixed and some move together, with edges and half-planes.
+/// Returns particles, edges and half-planes; some particles rest, some are fixed and some move together.
 fn crowd(numbers: &mut NumberSource, size: f64, collision: Collision) -> Scene {
     let mut drawn = |bound: f64| ((numbers.next() + 1.0) * 0.5 * bound) as usize;
     let count = 1 + drawn(13.0);
@@ -95,8 +95,8 @@ fn lanes_change_no_bit_and_no_count() {
     assert!(pairs > 100_000, "{pairs}");
 }
 
-/// Beyond what lanes are trusted with, and where numbers are none, pairs are computed one by one; a response may lead
-/// there.
+/// Pairs with numbers that are too large for lanes or not finite are computed one by one. A response may lead to such
+/// numbers.
 #[test]
 fn what_is_too_large_for_lanes_is_the_same_as_well() {
     let mut numbers = NumberSource(13);

@@ -82,7 +82,7 @@ fn in_the_contest_only_bodies_whose_boxes_overlap_repel() {
     assert!(by(CollisionDetection::Contest, &scene, &near)[0] > 1.0);
 }
 
-/// The pairs of a contest's search, again and again.
+/// Returns the pairs of a contest's search in several steps.
 fn searched(scene: &Scene, steps: &[&[f64]]) -> Vec<[u32; 2]> {
     let mut pairs = PenaltyPairs::new(scene, 0.0, CollisionDetection::Contest);
     let mut found = Vec::new();
@@ -99,7 +99,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     let scene = scene(first.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
     assert_eq!(searched(&scene, &[&then]), [[0, 1], [0, 2], [1, 2]]);
     assert_eq!(searched(&scene, &[&first, &then]), [[0, 1], [1, 2], [0, 2]]);
-    // A run that continues from a copied order is the same.
+    // A simulation that continues from a copied order gives the same result.
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     let mut order = SweepOrder::default();
     pairs.visit(&first, |_| {});
@@ -111,7 +111,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     assert_eq!(found, searched(&scene, &[&first, &then]));
 }
 
-/// Two boxes that overlap on x and y, but not on the diagonals, which count where there are edges.
+/// Two boxes overlap on x and y, but not on the diagonals, which count only in scenes with edges.
 #[test]
 fn where_there_are_edges_boxes_have_four_axes() {
     let x = [0.0, 0.0, 0.18, 0.18, 5.0, 0.0, 6.0, 0.0];
@@ -121,7 +121,8 @@ fn where_there_are_edges_boxes_have_four_axes() {
     assert!(searched(&scene, &[&x]).is_empty());
 }
 
-/// Many boxes of several sizes, some of which begin nowhere: what is found is what overlaps, step after step.
+/// Many boxes have different sizes, and some begin at NaN: in every step the search finds exactly the boxes that
+/// overlap.
 #[test]
 fn the_search_finds_what_overlaps_and_nothing_else() {
     let mut state = 1_u64;
@@ -130,13 +131,13 @@ fn the_search_finds_what_overlaps_and_nothing_else() {
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let count = 150;
-    // Some are much larger than most.
+    // Some boxes are much larger than most.
     let radii: Vec<f64> = (0..count).map(|_| 0.02 + 0.8 * std::iter::repeat_n(random(), 8).product::<f64>()).collect();
     let scene = scene(radii.iter().map(|&radius| particle((0.0, 0.0), (0.0, 0.0), 1.0, radius)).collect());
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     for step in 0..6 {
         let mut x: Vec<f64> = (0..2 * count).map(|_| 2.0 * random() - 1.0).collect();
-        // Far away, where the numbers of rows are no longer exact.
+        // These places are so far away that row numbers are no longer exact.
         (x[1], x[3], x[5]) = (1e9, -1e300, f64::INFINITY);
         if step > 3 {
             x[40] = f64::NAN;
@@ -160,7 +161,7 @@ fn the_search_finds_what_overlaps_and_nothing_else() {
             .collect();
         assert!(expected.len() > 100);
         if step > 3 {
-            // Where one begins nowhere, some that overlap are not seen, as in the original.
+            // If a box begins at NaN, some overlapping boxes are not found, as in the original.
             found.retain(|pair| pair.iter().all(|&body| is_placed(body as usize)));
             assert!(found.iter().all(|pair| expected.contains(pair)) && 2 * found.len() > expected.len());
         } else {
