@@ -159,8 +159,8 @@ impl Output {
 
 /// Prints the path of an output. If it is a page, the text says to open it in a browser.
 pub(super) fn print_path(file: &Path, is_page: bool) {
-    let what = if is_page { "open in a browser" } else { "written" };
-    console::print_remark(format!("{what}: {}\n", to_one_line(&file.display().to_string())));
+    let heading = if is_page { "open in a browser" } else { "written" };
+    console::print_remark(format!("{heading}: {}\n", to_one_line(&file.display().to_string())));
 }
 
 impl Output {

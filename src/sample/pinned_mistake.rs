@@ -27,10 +27,10 @@ pub fn pinned_mistake() -> Option<&'static str> {
 /// Returns a reserved place that contains no mistake.
 const fn empty_slot() -> PinSlot {
     let mut place = [0; SLOT_BYTES];
-    let mut at = 0;
-    while at < MARK_BACKWARDS.len() {
-        place[at] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - at];
-        at += 1;
+    let mut index = 0;
+    while index < MARK_BACKWARDS.len() {
+        place[index] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - index];
+        index += 1;
     }
     place
 }
@@ -48,10 +48,10 @@ fn read(place: &PinSlot) -> Option<&str> {
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = std::hint::black_box(MARK_BACKWARDS);
     mark.reverse();
-    let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
-    let (Some(at), None) = (found.next(), found.next()) else { return None };
+    let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(i, _)| i);
+    let (Some(start), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
-    let room = copy.get_mut(at + mark.len()..at + SLOT_BYTES)?;
+    let room = copy.get_mut(start + mark.len()..start + SLOT_BYTES)?;
     // One byte must remain zero, to mark the end of the id.
     if id.is_empty() || id.len() >= room.len() {
         return None;
@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_pinned_is_read_again() {
+    fn a_pinned_mistake_is_read_again() {
         let program = |place: &PinSlot| [b"before", &place[..], b"after"].concat();
         assert_eq!(read(&empty_slot()), None);
         let pinned = write(&program(&empty_slot()), "pe-square-no-eh").expect("a place");
@@ -74,8 +74,8 @@ mod tests {
         assert_eq!(read(place), Some("pe-square-no-eh"));
         assert_eq!((&pinned[..6], &pinned[6 + SLOT_BYTES..]), (&b"before"[..], &b"after"[..]));
         // Another id may replace it, also a shorter one.
-        let again = write(&pinned, "short").expect("a place");
-        assert_eq!(read(again[6..6 + SLOT_BYTES].try_into().expect("as long")), Some("short"));
+        let shorter = write(&pinned, "short").expect("a place");
+        assert_eq!(read(shorter[6..6 + SLOT_BYTES].try_into().expect("as long")), Some("short"));
     }
 
     #[test]

@@ -70,7 +70,7 @@ fn a_wrong_coefficient_is_shown_side_by_side() {
 }
 
 #[test]
-fn collisions_that_do_not_match_are_told_apart() {
+fn unmatched_collisions_are_distinguished() {
     let missed = changed(BOUNCE, |frames| frames[2].impulses.clear());
     insta::assert_snapshot!("missed_collision", reports(BOUNCE, &missed).0.shown());
     let superfluous = changed(BOUNCE, |frames| {
@@ -86,7 +86,7 @@ fn collisions_that_do_not_match_are_told_apart() {
 }
 
 #[test]
-fn polynomials_of_another_number_or_size_are_told_apart() {
+fn polynomials_of_another_number_or_size_are_distinguished() {
     let fewer = changed(BEAM, |frames| frames[2].polynomials.clear());
     insta::assert_snapshot!("too_few_polynomials", reports(BEAM, &fewer).0.shown());
     let more = changed(BEAM, |frames| {
@@ -205,7 +205,7 @@ fn damaged_traces_are_bad_traces_with_a_position() {
 }
 
 #[test]
-fn what_the_original_reads_over_is_noted() {
+fn input_that_the_original_ignores_is_recorded() {
     let trace = trace_of(BOUNCE);
     let trailing = [&trace[..], b"more"].concat();
     insta::assert_snapshot!("trailing_bytes", reports(BOUNCE, &trailing).0.shown());
@@ -305,7 +305,7 @@ fn broken_off(trace: &[u8], length: usize) -> String {
 }
 
 #[test]
-fn what_is_left_of_the_record_in_which_a_trace_breaks_off_is_nobodys_mistake() {
+fn an_incomplete_last_record_is_not_a_mistake() {
     let trace = trace_of(BEAM);
     let lengths = (1..60).map(|part| trace.len() * part / 60);
     for length in lengths.chain([trace.len() - 1, trace.len() - 8, trace.len() - 60]) {
@@ -318,7 +318,7 @@ fn what_is_left_of_the_record_in_which_a_trace_breaks_off_is_nobodys_mistake() {
 }
 
 #[test]
-fn a_mistake_before_the_break_is_still_told() {
+fn a_mistake_before_the_break_is_still_reported() {
     let mut trace = changed(BEAM, |frames| scale(&mut frames[2], 0, 2.0));
     trace.truncate(trace.len() - 8);
     let text = broken_off(&trace, trace.len());
@@ -398,7 +398,7 @@ fn checked_json(workspace: &Workspace, options: &[&str]) -> Value {
 }
 
 #[test]
-fn github_is_told_in_annotations() {
+fn github_gets_annotations() {
     let workspace = Workspace::with_trace(DRIFT);
     let check = |trace: &str| workspace.run(["check", "scene.xml", trace, "--format", "github"]);
     let right = check("trace.bin");
@@ -444,7 +444,7 @@ fn the_cause_comes_first_and_tables_when_they_are_asked_for() {
 }
 
 #[test]
-fn what_is_no_trace_is_told_in_one_line() {
+fn files_that_are_not_traces_are_reported_in_one_line() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
     for (bytes, says) in [

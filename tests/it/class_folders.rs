@@ -497,7 +497,7 @@ fn a_grading_ends_by_the_first_signal_although_nobody_reads_what_it_writes() {
 }
 
 #[test]
-fn what_has_no_end_is_read_up_to_a_limit() {
+fn endless_files_are_read_up_to_a_limit() {
     let workspace = workspace();
     let huge = |name: &str| {
         let path = workspace.path(name);
@@ -524,9 +524,9 @@ fn what_has_no_end_is_read_up_to_a_limit() {
         (&["simulate", "/dev/zero"], "larger than 8388608 bytes"),
         (&["simulate", "huge"], "larger than 8388608 bytes"),
         (&["simulate", "socket"], "a socket"),
-        (&["simulate", "folder"], "a directory"),
+        (&["simulate", "folder"], "a folder"),
         (&["check", "scenes/bounce.xml", "socket"], "a socket"),
-        (&["check", "scenes/bounce.xml", "folder"], "a directory"),
+        (&["check", "scenes/bounce.xml", "folder"], "a folder"),
         (&["merge", "sparse", "--output", "merged"], "shard.json"),
         (&["record", "--assets", "folder"], "there is no scene"),
     ] {

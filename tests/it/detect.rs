@@ -113,7 +113,7 @@ fn a_wrong_polynomial_of_a_trace_is_shown_beside_the_right_one() {
 /// With a factor, a program keeps round-off that the course's library drops from the reference's polynomials. The
 /// trace's polynomials are still right, and they are found in their places although they lead to more passes.
 #[test]
-fn what_a_factor_keeps_makes_no_polynomial_wrong() {
+fn coefficients_kept_by_a_factor_are_not_wrong() {
     let workspace = Workspace::new();
     let text = r#"<scene><duration time="0.4"/><integrator type="symplectic-euler" dt="0.02"/>
         <collision type="hybrid" COR="1" maxiters="0" k="0" thickness="0"/>
@@ -169,7 +169,7 @@ fn scenes_without_continuous_detection_give_the_motion_of_the_step() {
 }
 
 #[test]
-fn what_can_not_be_looked_at_is_said() {
+fn invalid_requests_are_reported() {
     let workspace = Workspace::with_trace(BEAM);
     for (words, says) in [
         ("--radii 1,1", "name a pair"),
@@ -206,7 +206,7 @@ fn what_can_not_be_looked_at_is_said() {
 
 /// A pair that is wrong in a later pass is examined in that pass, because in the first pass nothing is wrong.
 #[test]
-fn the_pair_of_a_later_pass_is_looked_at_in_that_pass() {
+fn the_pair_of_a_later_pass_is_examined_in_that_pass() {
     let workspace = Workspace::new();
     let scene = "asset:ImpulsesTests/row-of-five-one-end";
     let file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");

@@ -102,7 +102,7 @@ fn the_message_about_a_missing_trace_names_the_third_word() {
 }
 
 #[test]
-fn what_makes_the_original_die_gets_a_clear_message() {
+fn input_that_crashes_the_original_gets_a_clear_message() {
     let workspace = Workspace::with_trace(BOUNCE);
     let mut huge = workspace.read("trace.bin");
     huge[72..76].copy_from_slice(&i32::MAX.to_le_bytes());
@@ -130,7 +130,7 @@ fn what_makes_the_original_die_gets_a_clear_message() {
 }
 
 #[test]
-fn windows_are_refused() {
+fn a_display_is_rejected() {
     let workspace = Workspace::with_trace(BOUNCE);
     for (arguments, says) in
         [(&["-s", "scene.xml"][..], "there is no window"), (&["-s", "scene.xml", "-d", "1", "-o", "x"], "add -d 0")]
@@ -225,7 +225,7 @@ fn the_residual_file_is_written_through_and_failures_go_unnoticed() {
 }
 
 #[test]
-fn outputs_that_cannot_be_opened_are_said_in_the_originals_words() {
+fn outputs_that_cannot_be_opened_give_the_originals_message() {
     let workspace = Workspace::with_trace(BOUNCE);
     assert!(Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
     for name in ["no/such/folder", "pipe", "."] {

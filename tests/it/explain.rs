@@ -113,7 +113,7 @@ const SUBMISSIONS: [(&str, &str); 27] = [
 ];
 
 #[test]
-fn what_submissions_of_the_corpus_do_wrong_is_named() {
+fn mistakes_of_the_corpus_submissions_are_named() {
     let Some(folder) = corpus::folder() else { return };
     let text = std::fs::read_to_string(folder.join("verdicts.jsonl")).expect("readable");
     let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
@@ -138,14 +138,14 @@ fn what_submissions_of_the_corpus_do_wrong_is_named() {
         .collect();
     let misnamed: Vec<&String> = named.iter().flatten().collect();
     assert!(misnamed.is_empty(), "{misnamed:#?}");
-    corpus::ran("what_submissions_of_the_corpus_do_wrong_is_named", named.len());
+    corpus::ran("mistakes_of_the_corpus_submissions_are_named", named.len());
 }
 
 /// No correct variant is reported as wrong: the fair rules accept it, so no explanation is requested. If an explanation
 /// is requested anyway, it names nothing, except for the variants in this list. A fix for one of them removes it from
 /// the list.
 #[test]
-fn correct_variants_are_not_accused() {
+fn correct_variants_are_not_reported() {
     let scenes = suite();
     let accused: Vec<(&str, Vec<String>)> = rows(RowKind::Variant)
         .into_par_iter()
@@ -282,7 +282,7 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
 }
 
 #[test]
-fn wrong_usage_is_said() {
+fn wrong_usage_is_reported() {
     let workspace = Workspace::new();
     let run = workspace.run(["explain", SPINNING]);
     assert_eq!(run.code, Some(2));

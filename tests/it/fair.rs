@@ -158,7 +158,7 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
 /// A pair of balls falls side by side, so its approach is only round-off. A formula with the displacement of one ball
 /// gives another value, which only a program that divides polynomials by their size could log.
 #[test]
-fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
+fn a_wrong_approach_is_reported_if_the_right_one_is_round_off() {
     struct FirstAlone;
     impl StepController for FirstAlone {
         fn adjust_polynomials(&mut self, _: Pair, start: &[f64], end: &[f64], polynomials: &mut [Polynomial]) {
@@ -188,7 +188,7 @@ fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
 /// One polynomial has the right form, and all others have the course's exact bits. Its t^3 coefficient, which the right
 /// form does not have, is dropped.
 #[test]
-fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
+fn one_polynomial_with_the_right_form_among_the_courses_is_reported() {
     let scenes = assets();
     let (_, scene) = scenes.iter().find(|(name, _)| name == "ContinuousTimeTests/spinning-edge-sweeps-balls").unwrap();
     let layout = Layout::for_scene(scene);

@@ -34,7 +34,7 @@ fn text(folder: &OpenFolder, name: &str) -> String {
 }
 
 #[test]
-fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
+fn a_programs_files_are_returned_and_its_folder_is_unchanged() {
     let Some(backend) = with_namespaces() else { return };
     let folder = tempfile::tempdir().unwrap();
     let job = job(folder.path(), "mkdir out && cat input input > out/made && rm input && ln -s /etc/passwd link");

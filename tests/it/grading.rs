@@ -323,7 +323,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
 }
 
 #[test]
-fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
+fn a_part_of_a_suite_and_the_failed_scenes_are_graded_again() {
     let Some(workspace) = workspace() else { return };
     let submission = submit(&workspace, &["pe-square-no-eh"]).remove(0);
     let grade = |more: &[&str]| {

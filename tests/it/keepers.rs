@@ -100,7 +100,7 @@ fn a_run_finds_nothing_of_the_one_before_it() {
 }
 
 #[test]
-fn a_run_is_told_its_own_processor_time_alone() {
+fn a_run_reports_only_its_own_processor_time() {
     let Some(backend) = alone() else { return };
     let submission = tempfile::tempdir().unwrap();
     let program = submission.path().join("program");
@@ -162,7 +162,7 @@ fn walls_stand_for_every_run_of_a_keeper() {
 }
 
 #[test]
-fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
+fn a_lost_keeper_or_supervisor_is_reported_and_replaced() {
     let Some(backend) = alone() else { return };
     let bench = Bench::new("0.50079");
     for victim in [1, 2] {

@@ -74,7 +74,7 @@ fn most_mistakes_are_named_on_their_best_scene() {
 }
 
 #[test]
-fn no_correct_variant_is_accused() {
+fn no_correct_variant_is_reported() {
     let accused: Vec<String> = scenes()
         .par_iter()
         .flat_map_iter(|(name, scene, _)| {

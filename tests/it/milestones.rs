@@ -79,7 +79,7 @@ fn a_force_too_much_is_never_accepted() {
 
 /// A teacher gets a message if a scene of a suite needs more than the programs of its milestone can do.
 #[test]
-fn scenes_beyond_a_milestone_are_told_and_own_ones_rejected() {
+fn scenes_beyond_a_milestone_are_reported_and_own_ones_rejected() {
     let workspace = Workspace::new();
     let old = workspace.run(["suite", "check", "t1m2@1"]);
     assert!(

@@ -79,7 +79,7 @@ fn as_nobody() -> Vec<&'static str> {
 }
 
 #[test]
-fn files_that_are_closed_to_the_grader_are_told_and_no_fault_of_its_own() {
+fn unreadable_files_are_reported_and_not_a_grader_fault() {
     let Some(workspace) = open_to_all() else { return };
     fs::copy(workspace.path("class/right"), workspace.path("class/closed")).expect("a copy");
     fs::copy(workspace.path("class/right"), workspace.path("class/only-executable")).expect("a copy");

@@ -18,7 +18,7 @@ fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -
 }
 
 #[test]
-fn what_is_simulated_passes_and_the_audit_agrees() {
+fn simulated_traces_pass_and_the_audit_agrees() {
     let mut searched = 0;
     for name in library::names() {
         let scene = embedded(name);
@@ -69,7 +69,7 @@ proptest! {
 
     /// Damaged bytes cause no panic and no endless loop, and the result is the same for every number of threads.
     #[test]
-    fn damaged_traces_are_judged_alike_on_all_threads(
+    fn damaged_traces_have_one_verdict_on_all_threads(
         which in 0_usize..1000,
         changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),
         cut in proptest::option::of(any::<prop::sample::Index>()),

@@ -84,7 +84,7 @@ fn a_damaged_trace_is_drawn_as_far_as_it_goes() {
 }
 
 #[test]
-fn nonsense_is_refused_before_anything_is_written() {
+fn invalid_input_is_rejected_before_anything_is_written() {
     let workspace = Workspace::with_trace(BEAM);
     for (words, says) in [
         ("scene.xml --output x.gif --size 0x480", "0x480 is out of range; width and height must be 16 to 7680 pixels"),

@@ -83,7 +83,7 @@ fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
 }
 
 #[test]
-fn a_suite_whose_scenes_hang_on_round_off_is_told_so() {
+fn scenes_that_depend_on_round_off_are_reported() {
     let workspace = Workspace::new();
     // At the end of the first step the ball touches the half-plane, except for a rounding error.
     let ball = |vx, vy| {

@@ -87,7 +87,7 @@ fn an_ordinary_program_runs_and_its_words_are_kept() {
 }
 
 #[test]
-fn exit_codes_and_own_signals_are_told_apart() {
+fn exit_codes_and_own_signals_are_distinguished() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 3\n");
     assert_eq!(bench.run(&program, &[]).ended, RunEnd::Exited(3));
@@ -157,7 +157,7 @@ fn a_trace_may_be_longer_than_all_else_in_the_folder() {
 }
 
 #[test]
-fn a_refused_request_for_memory_is_the_memory_limit() {
+fn a_failed_memory_request_is_the_memory_limit() {
     let Some(bench) = Bench::new() else { return };
     let source = "#include <new>\nint main() { char *p = new char[1UL << 40]; p[0] = 1; return p[0]; }";
     let (from, program) = (bench.folder.path().join("source.cpp"), bench.folder.path().join("built"));
@@ -504,7 +504,7 @@ fn a_script_in_a_folder_that_is_closed_to_others_runs_all_the_same() {
 }
 
 #[test]
-fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
+fn a_removed_or_changed_staged_program_is_a_grader_fault() {
     use fosssim_oracle::sandbox::ProgramIdentity;
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 0\n");
@@ -519,7 +519,7 @@ fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
 
 /// Runs the program's own commands with a temporary folder in which nothing may be executed.
 #[test]
-fn a_temporary_folder_without_execution_is_told_and_graded_from_memory() {
+fn a_noexec_temporary_folder_is_reported_and_programs_run_from_memory() {
     let Some(_) = backend() else { return };
     let folder = tempfile::tempdir().unwrap();
     let line = "mount -t tmpfs -o noexec,mode=1777 tmpfs \"$0\" && export TMPDIR=\"$0\" && \"$1\" doctor; \"$1\" demo";

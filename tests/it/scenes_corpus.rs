@@ -34,7 +34,7 @@ fn scenes() -> Option<Vec<(String, Vec<u8>)>> {
 }
 
 #[test]
-fn both_readers_read_every_scene_alike() {
+fn both_readers_read_every_scene_in_the_same_way() {
     let Some(scenes) = scenes() else { return };
     for (name, bytes) in &scenes {
         let original = original::read(bytes).unwrap_or_else(|refusal| panic!("{name}: {refusal}"));
@@ -44,7 +44,7 @@ fn both_readers_read_every_scene_alike() {
             eprintln!("{name}:{warning}");
         }
     }
-    corpus::ran("both_readers_read_every_scene_alike", scenes.len());
+    corpus::ran("both_readers_read_every_scene_in_the_same_way", scenes.len());
 }
 
 #[test]

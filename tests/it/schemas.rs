@@ -36,7 +36,7 @@ fn schemas_are_those_of_the_types() {
 
 /// A schema that allows everything would check nothing.
 #[test]
-fn documents_with_unknown_or_missing_fields_are_refused() {
+fn documents_with_unknown_or_missing_fields_are_rejected() {
     for (command, schema) in schemas::all() {
         let validator = jsonschema::validator_for(schema.as_value()).expect("a schema");
         assert!(!validator.is_valid(&serde_json::json!({})), "{command}: fields may be missing");

@@ -109,7 +109,7 @@ fn shards_put_together_are_a_grading_in_one_go() {
 }
 
 #[test]
-fn shards_that_are_missing_doubled_or_foreign_are_told() {
+fn missing_repeated_and_foreign_shards_are_reported() {
     let Some(workspace) = workspace() else { return };
     class(&workspace);
     let grade = |shard: &str, folder: &str, more: &[&str]| {

@@ -51,7 +51,7 @@ fn a_link_is_followed_and_the_mode_is_kept() {
 }
 
 #[test]
-fn outputs_that_cannot_be_written_are_refused() {
+fn outputs_that_cannot_be_written_are_rejected() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
     workspace.write("folder/inside", "");
@@ -179,7 +179,7 @@ fn a_shell_completes_names() {
 }
 
 #[test]
-fn wrong_usage_is_told_apart_from_a_wrong_trace() {
+fn wrong_usage_differs_from_a_wrong_trace() {
     let workspace = Workspace::new();
     for arguments in
         [&[][..], &["grade"], &["check"], &["check", "a", "b", "--threads", "0"], &["check", "a", "b", "c"]]

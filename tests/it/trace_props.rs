@@ -94,7 +94,7 @@ proptest! {
     })]
 
     #[test]
-    fn what_is_written_is_read_again((layout, frames) in trace(), trailing in vec(any::<u8>(), 0..40)) {
+    fn written_values_are_read_again((layout, frames) in trace(), trailing in vec(any::<u8>(), 0..40)) {
         let mut bytes = write(layout, &frames);
         let sound = bytes.len();
         bytes.extend_from_slice(&trailing);
@@ -220,7 +220,7 @@ fn oddities_are_noted_and_read_over() {
 }
 
 #[test]
-fn negative_counts_are_refused() {
+fn negative_counts_are_rejected() {
     let (layout, mut bytes) = small();
     bytes[40 + 35] = 0xff;
     let error = rewrite(Reader::from_slice(&bytes, layout)).unwrap_err();

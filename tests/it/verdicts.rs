@@ -38,7 +38,7 @@ fn ended(row: &Value) -> bool {
 }
 
 #[test]
-fn the_drop_in_says_what_the_original_said() {
+fn the_drop_in_prints_what_the_original_printed() {
     let Some(folder) = corpus::folder() else { return };
     let rows = rows(&folder);
     for row in &rows {
@@ -52,7 +52,7 @@ fn the_drop_in_says_what_the_original_said() {
             assert!(!run.stderr.is_empty() && !workspace.exists("residual.txt"), "{}", name(row));
         }
     }
-    corpus::ran("the_drop_in_says_what_the_original_said", rows.len());
+    corpus::ran("the_drop_in_prints_what_the_original_printed", rows.len());
 }
 
 /// Checks that standard output, standard error, `residual.txt` and the exit code are the original's.

@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_left_out_put_in_or_wrong_is_told_apart() {
+    fn missing_additional_and_wrong_polynomials_are_distinguished() {
         let [a, b, c, d]: [&[f64]; 4] = [&[1.0, 2.0], &[3.0, -1.0, 0.5], &[-4.0, 1.0], &[7.0]];
         let matched =
             |expected: &[&[f64]], actual: &[&[f64]]| match_polynomials(&list(expected), &list(actual)).expect("short");
@@ -117,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_long_is_left_alone() {
+    fn lists_that_are_too_long_are_not_matched() {
         let many = |value: f64, count| {
             let mut log = PolynomialLog::default();
             (0..count).for_each(|_| log.push(&[value, 1.0]));

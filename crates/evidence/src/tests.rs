@@ -42,7 +42,7 @@ fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
 
 /// A wrong failsafe is reported where it happens; its consequences are not reported as separate errors.
 #[test]
-fn own_errors_are_told_from_inherited_ones() {
+fn own_errors_are_distinguished_from_inherited_ones() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
     let fair = outcome.fair.expect("asked");
@@ -116,7 +116,7 @@ fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
 
 /// If there are too few or too many polynomials, the report names the pairs to which they belong.
 #[test]
-fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
+fn missing_and_repeated_pairs_are_reported() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let close = |id: &str| judged(&scene, &of_mistake(&scene, id)).1.inspected.remove(0);
     let right = close("pe-linear-one-ab").passes.remove(0);
@@ -140,7 +140,7 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
 
 /// A pair is also shown from the trace's own mid record.
 #[test]
-fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
+fn a_pair_is_shown_in_every_pass_from_the_traces_own_records() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");
     let (outcome, evidence) = judged(&scene, &of_mistake(&scene, "failsafe-angular-overwritten"));
     let step = outcome.findings_by(Book::Fair).first_divergence.expect("wrong").step;

@@ -160,7 +160,7 @@ mod tests {
 
     /// The second round was disturbed. It increases the spread, but costs no points.
     #[test]
-    fn the_least_times_count_and_the_spread_is_told() {
+    fn the_minimum_times_count_and_the_spread_is_reported() {
         let right = Verdict::Accepted;
         let scenes = [scene(right, &[(30, 10), (90, 10)], None), scene(right, &[(50, 10), (30, 30)], None)];
         let grade = SpeedGrade::from_scenes(MARKING, &scenes);

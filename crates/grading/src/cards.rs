@@ -180,7 +180,7 @@ mod tests {
 
     /// A card for staff never replaces the card for students.
     #[test]
-    fn students_have_a_card_of_their_own_where_they_are_told_less() {
+    fn students_have_a_separate_card_if_they_see_less() {
         let (scene, outcome, result) = wrong();
         let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");

@@ -266,7 +266,7 @@ mod tests {
 
     /// Explaining takes as long as judging many traces, so it is skipped if no reader may see the result.
     #[test]
-    fn what_is_not_told_is_not_explained() {
+    fn invisible_explanations_are_not_computed() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let trace = student::record_trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
         let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };

@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_all_that_fail_and_no_others_contain_is_told_with_its_counts() {
+    fn common_features_of_failing_scenes_are_reported_with_counts() {
         let features = scenes(24, 9, 85);
         let found = located(&features, |number| (number < 24).then_some(FailureKind::Crash)).expect("a place");
         assert_eq!(

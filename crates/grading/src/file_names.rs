@@ -95,7 +95,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     #[test]
-    fn what_people_are_called_stays_as_it_is() {
+    fn names_of_people_are_unchanged() {
         for name in
             ["alice", "Zoë", "Nguyễn Văn A", "שלמה", "محمد", "कुमार", "山田太郎", "O'Brien-Łoś", "a,b", "=cmd", "ﾀﾛｳ"]
         {

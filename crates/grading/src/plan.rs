@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    fn missing_and_doubled_scenes_are_told_at_their_patterns() {
+    fn missing_and_repeated_scenes_are_reported_at_their_patterns() {
         let text = "schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:NoSuchTests/*\",\n \
                     \"no/*.xml\"]\n                    [[group]]\nname = \"b\"\nscenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";
         let error = load_suite(text, Path::new("nowhere")).expect_err("wrong").to_string();

@@ -187,7 +187,7 @@ mod tests {
     }
 
     #[test]
-    fn a_submission_that_is_no_file_is_told_so() {
+    fn a_submission_that_is_not_a_file_is_reported() {
         let folder = tempfile::tempdir().unwrap();
         let sources = folder.path().join("sources");
         let _socket = make_odd_entries(&sources);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn a_missing_or_damaged_recording_is_said() {
+    fn a_missing_or_damaged_recording_is_reported() {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert!(recording.describe_difference(None, None).unwrap().contains("there is no recording"));
         let packed = recording.pack().unwrap();

@@ -255,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_run_or_not_judged_has_no_points_and_its_group_neither() {
+    fn scenes_without_a_verdict_have_no_points_and_neither_has_their_group() {
         for missing in [Verdict::NotRun, Verdict::JudgeError] {
             for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
                 let marking = Marking {

@@ -458,12 +458,12 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_is_the_submissions_own_fault() {
+    fn a_submission_that_is_too_large_is_unusable() {
         let folder = tempfile::tempdir().unwrap();
         let sources = folder.path().join("sources");
         std::fs::create_dir(&sources).unwrap();
         File::create(sources.join("huge")).unwrap().set_len(100 << 30).unwrap();
-        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("too much for a submission"));
+        assert!(why(copy_sources(&sources, &folder.path().join("copy"))).contains("which is too much"));
     }
 
     #[test]

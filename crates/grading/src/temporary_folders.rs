@@ -206,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn who_loses_its_folder_to_a_sweeper_while_it_is_made_takes_another() {
+    fn a_grader_that_loses_its_new_folder_takes_another() {
         const ROUNDS: u32 = 200;
         let place = tempfile::tempdir().unwrap();
         let done = std::sync::atomic::AtomicBool::new(false);

@@ -75,7 +75,7 @@ mod tests {
     use std::fs;
 
     #[test]
-    fn what_is_there_instead_of_the_program_is_listed_and_looked_through() {
+    fn files_instead_of_the_program_are_listed_and_searched() {
         let folder = tempfile::tempdir().unwrap();
         let found = || match explain_missing_program("FOSSSim", folder.path()) {
             UnusableReason::NoProgram { sought, found } if sought == "FOSSSim" => found,

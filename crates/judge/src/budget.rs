@@ -176,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn where_judging_is_given_up_does_not_depend_on_threads() {
+    fn the_end_of_judging_does_not_depend_on_threads() {
         let scene = posts(100.0, 2000);
         let trace = squeezed(&scene);
         let of_threads = |threads| {
@@ -189,7 +189,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fair_costs_is_nothing_to_parity() {
+    fn the_cost_of_fair_does_not_affect_parity() {
         let scene = posts(100.0, 2000);
         let trace = squeezed(&scene);
         let alone = judged(1_500_000, &scene, &trace, false, 1);
@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn what_the_scene_itself_takes_is_always_allowed() {
+    fn the_work_of_the_scene_itself_is_always_allowed() {
         let scene = posts(0.0, 20_000);
         let trace = write_frames(&scene, &simulate(&scene, ()));
         let floor = scene_work(&scene) / 2;

@@ -59,7 +59,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_fits_is_kept_and_the_rest_is_passed_on() {
+    fn the_kept_part_is_limited_and_the_rest_is_forwarded() {
         let trace: Vec<u8> = (0..100).collect();
         for (most, is_whole) in [(101, true), (100, true), (99, false), (0, false)] {
             let mut kept = KeptTrace::new(most);

@@ -132,7 +132,7 @@ mod tests {
     }
 
     #[test]
-    fn what_ends_at_a_touch_hangs_on_round_off() {
+    fn steps_that_end_at_a_touch_depend_on_round_off() {
         assert!(!study(0.4).is_certain);
     }
 }

@@ -459,7 +459,7 @@ mod tests {
     /// A polynomial that clearly has a factor is accepted, and nearly every polynomial that is accepted with a factor
     /// has it clearly.
     #[test]
-    fn what_clearly_has_a_factor_passes() {
+    fn polynomials_with_a_clear_factor_are_accepted() {
         let mut seed = 1_u64;
         let mut next = move || {
             seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

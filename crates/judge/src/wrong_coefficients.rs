@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_differs_after_the_best_factor_is_named() {
+    fn differences_after_the_best_factor_are_named() {
         let expected = [-0.2, 4.0, -3.0, 1.44, 0.5];
         for (scale, power) in [(1.0, 1), (1.0, 0), (3.0, 4), (0.125, 2)] {
             let mut actual = expected.map(|value| scale * value);
@@ -68,7 +68,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_agrees_the_factor_is_one() {
+    fn without_agreement_the_factor_is_one() {
         assert_eq!(find_factor(&[1.0, 2.0], &[-1.0, -2.0]), 1.0);
         assert_eq!(find_factor(&[1.0, 2.0], &[3.0, 5.0]), 1.0);
         assert_eq!(find_differing_powers(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);

@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_the_double_hyphen_is_ignored() {
+    fn arguments_after_the_double_hyphen_are_ignored() {
         assert_eq!(run(&["-s", "a", "--", "-s", "nonsense"]).unwrap().scene, "a");
         assert!(error(&["--ignore_rest", "-s", "a"]).contains("Required argument missing: scene"));
     }

@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nonsense_is_refused_in_words() {
+    fn invalid_input_is_rejected_with_a_message() {
         assert_eq!("640x480".parse(), Size::new(640, 480));
         let refused = |text: &str| text.parse::<Size>().unwrap_err().to_string();
         assert_eq!(refused("640"), "`640` is not a size; write WIDTHxHEIGHT, for example 640x480");

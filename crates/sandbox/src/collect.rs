@@ -63,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn whatever_else_a_program_leaves_is_refused_by_name() {
+    fn other_outputs_of_a_program_are_rejected_by_name() {
         let outside = tempfile::tempdir().unwrap();
         let secret = outside.path().join("reference.bin");
         std::fs::write(&secret, b"secret").unwrap();

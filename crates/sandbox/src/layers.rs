@@ -358,7 +358,7 @@ mod tests {
     }
 
     #[test]
-    fn root_that_cannot_change_its_user_is_refused() {
+    fn root_that_cannot_change_its_user_is_rejected() {
         let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
         assert!(select_layers(&reports(&bound)).unwrap_err().contains("ordinary user"));
     }

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_group_may_still_have_counts() {
+    fn possible_points_of_a_group_count() {
         let folder = tempfile::tempdir().unwrap();
         let group =
             LimitedGroup { limit: folder.path().join("memory.max"), usage: folder.path().join("memory.current") };

@@ -285,7 +285,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_program_is_said_to_be_what_it_is() {
+    fn files_that_are_not_programs_are_named_by_kind() {
         let folder = tempfile::tempdir().unwrap();
         assert_eq!(examine(folder.path(), &[]), Err(StartProblem::IsFolder));
         assert_eq!(examine(&folder.path().join("none"), &[]), Err(StartProblem::NotFound));
@@ -373,7 +373,7 @@ mod tests {
     }
 
     #[test]
-    fn a_script_is_not_told_which_files_the_host_has() {
+    fn a_script_cannot_find_out_which_files_the_host_has() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("there"), "").unwrap();
         let told = |name: &str| {

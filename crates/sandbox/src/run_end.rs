@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn who_gives_up_for_want_of_memory_has_met_the_memory_limit() {
+    fn a_program_that_runs_out_of_memory_has_met_the_memory_limit() {
         let aborted = Report { status: libc::SIGABRT, ..Report::default() };
         let words = b"terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc\n";
         assert_eq!(decide_end(&order(), &aborted, words), RunEnd::MemoryLimit);

@@ -168,7 +168,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_required_may_not_be_skipped() {
+    fn required_tests_may_not_be_skipped() {
         assert_eq!(check_allowed(Need::Corpus, ""), Ok(()));
         assert_eq!(check_allowed(Need::Corpus, "sandbox, cc"), Ok(()));
         assert!(check_allowed(Need::Corpus, "sandbox,corpus").is_err());
@@ -178,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn the_list_is_told_by_need() {
+    fn the_list_is_grouped_by_need() {
         let list = "cc\ta::one\tno cc\ncorpus\tb::two\tnothing at x\ncc\ta::three\tno cc\ncc\ta::one\tno cc\n";
         assert_eq!(
             summary(list),

@@ -151,8 +151,8 @@ fn reject_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
 /// Collects the evidence for the report. If only a part of the trace was kept and the file can be read again, the whole
 /// trace is used.
 fn gather_evidence(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
-    let mut again = if lasts && !examined.trace.is_whole() { input::open_trace(name).ok() } else { None };
-    examined.gather_evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
+    let mut reopened = if lasts && !examined.trace.is_whole() { input::open_trace(name).ok() } else { None };
+    examined.gather_evidence(reopened.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
 }
 
 /// Returns whether a trace can be read a second time. It then need not be kept while it is judged.

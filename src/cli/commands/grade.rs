@@ -336,7 +336,7 @@ impl GradingSession<'_> {
     ) -> Result<u8> {
         let mut earlier = earlier;
         loop {
-            let seen = find_change_stamps(submissions);
+            let last_graded = find_change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_cancelled() {
                 return Ok(code);
@@ -344,14 +344,14 @@ impl GradingSession<'_> {
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::print_error("waiting for a change; press Ctrl-C to end\n");
             // A file is used only after it has stopped changing, because a linker writes in several steps.
-            let mut last = seen.clone();
+            let mut last = last_graded.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
                 if self.cancellation.is_cancelled() {
                     return Ok(exit::INTERRUPTED);
                 }
                 let now = find_change_stamps(submissions);
-                if now == last && now != seen && now.iter().all(Option::is_some) {
+                if now == last && now != last_graded && now.iter().all(Option::is_some) {
                     break;
                 }
                 last = now;

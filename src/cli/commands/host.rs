@@ -166,9 +166,9 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }
     let broken = table.broken().count();
-    let held = format_count(table.count_kept() as u64, "promise");
+    let kept = format_count(table.count_kept() as u64, "promise");
     let untested = table.promises.len() - table.count_kept() - broken;
-    let _ = writeln!(text, "\n{held} kept, {broken} broken, {untested} not tested here");
+    let _ = writeln!(text, "\n{kept} kept, {broken} broken, {untested} not tested here");
     console::report(&text)?;
     Ok(if broken == 0 && table.count_kept() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

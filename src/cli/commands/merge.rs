@@ -126,9 +126,9 @@ fn require_complete<'a>(
             grade.submission
         );
     }
-    let of = first.common.total;
+    let total = first.common.total;
     let mut missing = Vec::new();
-    for number in 1..=of {
+    for number in 1..=total {
         let found: Vec<String> = parts
             .iter()
             .filter(|(_, part)| part.number == number)
@@ -137,13 +137,13 @@ fn require_complete<'a>(
         match found.len() {
             0 => missing.push(number.to_string()),
             1 => {}
-            _ => bail!("shard {number} of {of} exists more than once: {}", found.join(" and ")),
+            _ => bail!("shard {number} of {total} exists more than once: {}", found.join(" and ")),
         }
     }
     if !missing.is_empty() {
         let (are, them) = if missing.len() == 1 { ("is", "it") } else { ("are", "them") };
         bail!(
-            "{} of {of} {are} missing, or not done: {}; grade {them} with --shard, and merge again",
+            "{} of {total} {are} missing, or not done: {}; grade {them} with --shard, and merge again",
             format_count(missing.len() as u64, "shard"),
             missing.join(", ")
         );

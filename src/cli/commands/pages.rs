@@ -125,12 +125,12 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
         return None;
     }
     if recorded {
-        let again = catch_panic(|| {
+        let examined = catch_panic(|| {
             let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
         // A failure while drawing must not cost points.
-        let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
+        let Ok(ExaminedTrace { outcome, rulings, .. }) = examined else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw_card(&own, false)
             .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(NOTE).to_stored()));

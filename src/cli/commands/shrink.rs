@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn what_fits_a_single_sample_is_not_shown() {
+    fn fits_of_a_single_sample_are_not_shown() {
         let wrong = Explanation::for_wrong_polynomials(Vec::new(), PolynomialEvidence::Nothing);
         let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
         assert_eq!([1, 2].map(|samples| add_example(&fitted(samples), &[]).details.len()), [0, 1]);

@@ -139,7 +139,7 @@ impl<'a> Search<'a> {
         let before = found.len();
         for path in &paths {
             let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
-            let why = match fs::symlink_metadata(path) {
+            let reason = match fs::symlink_metadata(path) {
                 _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULT_FOLDER_REASON.to_owned(),
                 _ if path.file_name().is_some_and(fosssim_intake::is_system_file) => {
                     "a file manager or a build tool created it".to_owned()
@@ -156,7 +156,7 @@ impl<'a> Search<'a> {
                     "this is a link, which may lead to another student's submission; name it to grade it".to_owned()
                 }
                 Ok(data) if data.is_file() => match rejection_reason(folder, path, &data) {
-                    Some(why) => why,
+                    Some(reason) => reason,
                     None => {
                         found.push(program_entry(folder, path));
                         continue;
@@ -165,7 +165,7 @@ impl<'a> Search<'a> {
                 Ok(_) => "this is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
-            skip_entry(passed_over, path, &why);
+            skip_entry(passed_over, path, &reason);
         }
         if found.len() == before {
             bail!(
@@ -238,10 +238,10 @@ fn reject_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, why: &str) {
+fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, reason: &str) {
     let name = file_names::to_printable(path.file_name().unwrap_or(path.as_os_str()));
-    console::print_error(format!("skipped {name}: {why}\n"));
-    passed_over.push(SkippedEntry { name, reason: why.to_owned() });
+    console::print_error(format!("skipped {name}: {reason}\n"));
+    passed_over.push(SkippedEntry { name, reason: reason.to_owned() });
 }
 
 /// Returns the last part of a path.
@@ -306,12 +306,12 @@ fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<ProgramFil
         let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
         console::print_error(format!("one file with several names (hard links): {}\n", names.join(", ")));
     }
-    let of = |(identity, is_owner): (Identity, Option<bool>)| {
+    let to_program_file = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];
         let is_owned = same.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
         ProgramFile { identity, is_shared: same.len() > 1, has_other_owner: is_owned && is_owner != Some(true) }
     };
-    files.iter().map(|file| file.map(of)).collect()
+    files.iter().map(|file| file.map(to_program_file)).collect()
 }
 
 #[cfg(test)]

@@ -41,14 +41,14 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
     // Small scenes are tried first, because most mistakes already show in these.
     scenes.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
-    let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
-    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
+    let is_of_students = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
+    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_of_students).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
     // Most mistakes in writing a trace concern lists. Traces that contain only states have no lists.
     let concerns = |row: &Row| {
         (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| may_change_trace(scene, row))
     };
-    let seen: Vec<usize> = rows
+    let scene_count: Vec<usize> = rows
         .par_iter()
         .map(|row| {
             let student = Student::new(Some(row.mistake));
@@ -57,8 +57,8 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
         })
         .collect();
     let mut parts: Vec<VisibleMistakes> = Vec::new();
-    for (row, seen) in rows.iter().zip(seen) {
-        if seen == 0 && !concerns(row) {
+    for (row, scene_count) in rows.iter().zip(scene_count) {
+        if scene_count == 0 && !concerns(row) {
             continue;
         }
         let place = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
@@ -71,7 +71,7 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
             parts.len() - 1
         });
         parts[place].mistake_count += 1;
-        match seen {
+        match scene_count {
             0 => parts[place].invisible_mistakes.push(row.id),
             MAX_LISTED_SCENES.. => {}
             _ => parts[place].rarely_visible.push(row.id),

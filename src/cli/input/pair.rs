@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_point_is_refused_with_advice() {
+    fn invalid_points_are_rejected_with_advice() {
         for word in ["", "3", "3;1", "3,x", "3,1+4", "3,1,2", "nan,0", "3,1..", "1e999,0", "3,1+4,1+2,2"] {
             let error = format!("{:#}", parse_moving(word).unwrap_err());
             assert!(error.contains("is not a point"), "{word}: {error}");
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn the_kind_of_pair_is_looked_at_before_the_radii_are_missed() {
+    fn the_kind_of_pair_is_checked_before_the_radii() {
         let error = |word: &str| format!("{:#}", parse_motion(word, None).unwrap_err());
         assert!(error("xx:1").contains("`xx` is not a kind of pair"), "{}", error("xx:1"));
         assert!(error("particle-egde:1").ends_with("did you mean particle-edge?"), "{}", error("particle-egde:1"));

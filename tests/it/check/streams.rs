@@ -9,7 +9,7 @@ use std::{
 };
 
 #[test]
-fn a_pipe_that_nobody_writes_to_is_refused() {
+fn a_pipe_without_a_writer_is_rejected() {
     let workspace = Workspace::with_trace(BOUNCE);
     assert!(std::process::Command::new("mkfifo").arg(workspace.path("pipe")).status().unwrap().success());
     let run = workspace.run(["check", "scene.xml", "pipe"]);

@@ -5,7 +5,7 @@ use fosssim_testing::{Need, skip};
 use std::{os::unix::fs::symlink, path::Path};
 
 #[test]
-fn what_can_not_be_run_is_explained() {
+fn programs_that_cannot_run_are_explained() {
     let Some(workspace) = workspace() else { return };
     workspace.write("text", "no program");
     workspace.write("script", "#!/no/such/interpreter\n");

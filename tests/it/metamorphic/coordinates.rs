@@ -277,7 +277,7 @@ fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
 }
 
 #[test]
-fn built_in_scenes_go_on_alike_however_they_are_written() {
+fn built_in_scenes_do_not_depend_on_their_notation() {
     let results: Vec<Result<(u32, u32), String>> = built_in()
         .par_iter()
         .filter(|(_, scene)| !has_layers_in_boxes(scene))
@@ -292,7 +292,7 @@ fn built_in_scenes_go_on_alike_however_they_are_written() {
 }
 
 #[test]
-fn random_scenes_go_on_alike_however_they_are_written() {
+fn random_scenes_do_not_depend_on_their_notation() {
     let (compared, hits) = (Cell::new(0), Cell::new(0));
     for collision in [hybrid(0.5, 3), hybrid(1.0, 0), Collision::ContinuousTime { restitution: 0.5 }] {
         search(500, &crowd(Wanted { collision, fixed: true, half_planes: true, steps: 2 }), |scene| {

@@ -24,7 +24,7 @@ fn help_is_wrapped_once() {
 }
 
 #[test]
-fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
+fn a_trace_instead_of_the_scene_is_reported_in_one_line() {
     let workspace = Workspace::with_trace(DRIFT);
     for command in [&["check"][..], &["explain"], &["trace", "info"]] {
         let run = workspace.run(command.iter().chain(&["trace.bin", "scene.xml"]));
@@ -43,7 +43,7 @@ fn a_trace_in_the_place_of_the_scene_is_told_in_one_line() {
 }
 
 #[test]
-fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
+fn a_scene_instead_of_the_trace_is_reported_in_one_line() {
     let workspace = Workspace::with_trace(DRIFT);
     for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "info", "scene.xml", "scene.xml"]] {
         let run = workspace.run(command);
@@ -56,7 +56,7 @@ fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
 }
 
 #[test]
-fn what_comes_with_the_program_is_found_under_its_full_name() {
+fn built_in_files_are_found_under_their_full_name() {
     let workspace = Workspace::with_trace(DRIFT);
     for name in ["SimpleTests/one-ball-into-two", "SimpleTests/one-ball-into-two.xml"] {
         let run = workspace.run(["check", name, "trace.bin"]);
@@ -66,7 +66,7 @@ fn what_comes_with_the_program_is_found_under_its_full_name() {
 }
 
 #[test]
-fn a_step_that_is_no_number_is_told_in_plain_words() {
+fn a_step_that_is_not_a_number_is_reported() {
     let workspace = Workspace::with_trace(DRIFT);
     for command in [&["check"][..], &["trace", "show"]] {
         for step in ["-1", "x", "1.5", "99999999999"] {
@@ -90,7 +90,7 @@ fn names_of_files_give_the_terminal_no_orders() {
 }
 
 #[test]
-fn counts_and_scenes_that_make_no_sense_are_told_in_plain_words() {
+fn invalid_counts_and_scenes_are_reported() {
     let workspace = Workspace::with_trace(DRIFT);
     for (words, says) in [
         (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "the value must be a whole number of at least 1"),
@@ -150,7 +150,7 @@ fn the_course_script_says_in_a_sentence_that_a_program_is_missing() {
 }
 
 #[test]
-fn a_scene_in_the_place_of_the_program_is_told_with_what_to_type() {
+fn a_scene_instead_of_the_program_is_reported_with_the_right_command() {
     let workspace = Workspace::with_trace(DRIFT);
     let run = workspace.run(["grade", "scene.xml"]);
     assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
@@ -180,7 +180,7 @@ fn slips_in_names_of_scenes_and_pairs_find_what_was_meant() {
 }
 
 #[test]
-fn whoever_writes_into_a_file_is_told_where() {
+fn output_files_are_named() {
     let workspace = Workspace::with_trace(BOUNCE);
     for (command, says) in [
         (&["check", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"][..], "open in a browser: "),

@@ -50,7 +50,7 @@ fn failing(fails: impl Fn(&str, &str) -> bool) -> Vec<String> {
 }
 
 #[test]
-fn summaries_are_told_apart() {
+fn summaries_are_distinguished() {
     let text = "/// Returns one.\n/// More.\n#[must_use]\npub fn one() {}\n\n    /// The same in short.\n    two: u8,\n\
                 /// A test.\n#[test]\nfn a()";
     let found = [("Returns one.", "pub fn one() {}"), ("The same in short.", "two: u8,")];

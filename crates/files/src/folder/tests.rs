@@ -46,7 +46,7 @@ fn nothing_beneath_a_folder_is_reached_by_a_link_or_waited_for() {
 }
 
 #[test]
-fn what_is_written_takes_the_place_of_whatever_has_its_name() {
+fn written_files_replace_anything_with_their_name() {
     let (outside, inside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
     let other = outside.path().join("other");
     fs::write(&other, b"untouched").unwrap();

@@ -128,7 +128,7 @@ fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
 }
 
 #[test]
-fn a_changed_program_is_graded_anew() {
+fn a_changed_program_is_graded_again() {
     let stage = TestGrading::new();
     let (plan, never) = (small_plan(), Cancellation::default());
     let results = tempfile::tempdir().expect("folder");
@@ -202,7 +202,7 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
 }
 
 #[test]
-fn a_display_that_fails_is_told_and_costs_no_grade() {
+fn a_failing_display_is_reported_and_changes_no_grade() {
     let stage = TestGrading::new();
     let (plan, never) = (small_plan(), Cancellation::default());
     let mut told = 0;
@@ -240,7 +240,7 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
 
 /// The reference's runs show what the scenes in which a program crashes have in common.
 #[test]
-fn a_program_that_crashes_in_the_failsafe_is_told_so() {
+fn a_crash_in_the_failsafe_is_located() {
     let stage = TestGrading::new();
     let suite = |hints: &str| {
         let text = format!(
@@ -275,7 +275,7 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
 }
 
 #[test]
-fn what_logs_nothing_is_not_written_yet() {
+fn stages_that_log_nothing_are_not_written_yet() {
     let stage = TestGrading::new();
     let text = "schema = 1\nname = \"test\"\n[[group]]\nname = \"all\"\ncredit = \"steps\"\nscenes = \
                 [\"asset:ContinuousTimeTests/*\", \"asset:ImpulsesTests/o*\"]\n";

@@ -13,7 +13,7 @@ fn the_template_is_a_valid_suite() {
 }
 
 #[test]
-fn many_problems_of_a_long_line_are_told_at_once() {
+fn many_problems_of_a_long_line_are_reported_together() {
     let text = format!("name = \"{}\"\nrun = [{}]\nlast = 1\n", "ü".repeat(9), "[], ".repeat(100_000));
     let problems = read(&text).expect_err("wrong").problems;
     let at = |index: usize| problems[index].0.to_string();
@@ -21,7 +21,7 @@ fn many_problems_of_a_long_line_are_told_at_once() {
 }
 
 #[test]
-fn every_problem_is_told_with_its_position() {
+fn every_problem_is_reported_with_its_position() {
     let text = "schema = 2\nname = \"\"\nrules = \"kind\"\nrun = [\"sh\", \"{scene}\"]\n[limits]\ncpu_seconds = -1.0\n\
                 [[group]]\nname = \"a\"\nscenes = []\npoints = -5.0\n";
     insta::assert_snapshot!(read(text).expect_err("wrong"), @r#"
@@ -65,7 +65,7 @@ fn misspelt_keys_are_named_with_what_was_meant() {
 }
 
 #[test]
-fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_rest() {
+fn unknown_keys_and_bad_values_are_reported_together() {
     let text = "schema = \"1\"\nname = \"x\"\nrules = \"Fair!\"\nhints = \"half\"\nshow_output = 1\ncpu_seconds = 3\n\
                 run = \"{program}\"\n[limits]\ncpu-second = 1\nmemory_mib = \"512\"\nfiles = nan\n[build]\n\
                 comand = [\"make\"]\nprogram = \"../x\"\n[[group]]\nnam = \"a\"\nscenes = [\"asset:No/*\", 3]\n\
@@ -97,7 +97,7 @@ fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_r
 }
 
 #[test]
-fn broken_lines_are_told_and_nothing_that_follows_from_them() {
+fn broken_lines_are_reported_without_their_consequences() {
     let error = read("schema = 1\nname = \n[[group]]\nscenes = [\"a\"\n").expect_err("wrong");
     assert!(error.problems.iter().all(|(at, _)| at.line >= 2), "{error}");
     assert!(!error.to_string().contains("no [[group]]"), "{error}");

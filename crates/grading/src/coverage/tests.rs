@@ -13,7 +13,7 @@ fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
 }
 
 #[test]
-fn what_happens_is_seen_with_its_properties() {
+fn events_are_counted_with_their_properties() {
     // Two discs run side by side into each other's edge in a scene without impulses: the zone moves and does not turn.
     let coverage = of(r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/>
         <collision type="hybrid" COR="0.5" maxiters="0" k="0" thickness="0"/>

@@ -92,7 +92,7 @@ fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_
 }
 
 #[test]
-fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() {
+fn grading_stops_if_results_cannot_be_stored() {
     let (stage, plan) = (TestGrading::new(), small_plan());
     let mut grader = stage.grader(&plan);
     grader.options.jobs = 1;
@@ -109,7 +109,7 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
 }
 
 #[test]
-fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
+fn a_panic_on_one_scene_is_its_judge_error_and_is_tried_again() {
     let (stage, plan) = (TestGrading::new(), small_plan());
     let scenes = plan.scenes().count();
     let troubled = plan.scenes().nth(2).expect("a scene").name.clone();

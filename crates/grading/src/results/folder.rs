@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn what_no_grader_writes_takes_no_memory_and_no_time() {
+    fn foreign_lines_take_no_memory_and_no_time() {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join(JOURNAL_NAME);
         let journal = File::create(&path).expect("a file");
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn a_full_disk_is_told_and_leaves_whole_lines() {
+    fn a_full_disk_is_reported_and_leaves_complete_lines() {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.store(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");

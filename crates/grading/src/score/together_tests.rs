@@ -107,7 +107,7 @@ fn each_scene_says_what_all_together_say() {
 
 /// Students should fix a mistake first, before the values that are not finite.
 #[test]
-fn where_numbers_end_comes_last() {
+fn the_first_nan_comes_last() {
     let end = || {
         explanation(
             Explanation::NOT_FINITE,

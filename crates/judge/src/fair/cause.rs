@@ -116,14 +116,14 @@ mod tests {
     }
 
     #[test]
-    fn where_the_books_agree_there_is_no_cause() {
+    fn there_is_no_cause_if_the_books_agree() {
         assert_eq!(find_cause(&judge_by_both(&changed_trace(|_| {}))), None);
         assert_eq!(find_cause(&judge_by_both(&changed_trace(|frames| frames[2].impulses.clear()))), None);
         assert_eq!(find_cause(&judge_by_both(&[])), None);
     }
 
     #[test]
-    fn what_parity_never_looks_at_is_named() {
+    fn values_that_parity_ignores_are_named() {
         let both = |change: fn(&mut Frame)| {
             changed_trace(|frames| {
                 change(&mut frames[1]);

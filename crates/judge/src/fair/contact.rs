@@ -323,7 +323,7 @@ mod tests {
     /// If both states contain NaN, the distance is zero. A program that ends with NaN like the reference has met the
     /// scene's requirements.
     #[test]
-    fn what_is_no_number_for_the_reference_either_is_no_distance() {
+    fn nan_in_both_states_is_no_distance() {
         let (nan, infinite) = (f64::NAN, f64::INFINITY);
         assert_eq!(distance(Vec2::new(nan, infinite), Vec2::new(-nan, infinite)), 0.0);
         assert_eq!(distance(Vec2::new(nan, 1.0), Vec2::new(nan, 4.0)), 3.0);

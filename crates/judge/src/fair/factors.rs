@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn what_many_tell_is_usual() {
+    fn frequent_factors_are_usual() {
         assert_eq!(factors_from([3.0, 3.0, 3.0]).usual_range(), Some([3.0; 2]));
         assert_eq!(
             factors_from((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual_range(),

@@ -44,7 +44,7 @@ fn nothing_that_is_missing_or_exchanged_passes_without_a_reason() {
 }
 
 #[test]
-fn programs_with_factors_are_charged_with_nothing_but_lost_decisions() {
+fn programs_with_factors_have_only_lost_decisions() {
     let faults = faults(COUNT, multiply);
     assert!(faults.is_empty(), "{}: {:#?}", faults.len(), &faults[..faults.len().min(12)]);
 }

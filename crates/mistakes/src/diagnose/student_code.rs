@@ -57,7 +57,7 @@ mod tests {
     use fosssim_student::{all_rows, find};
 
     #[test]
-    fn only_the_students_own_code_is_accused() {
+    fn only_the_students_own_code_is_reported() {
         let writes = |id: &str, whose| is_written_by_student(find(id).expect("a row"), whose);
         assert!(writes("explicit-velocities-mass", Assignment::T1M1));
         assert!(!writes("explicit-velocities-mass", Assignment::T1M2));

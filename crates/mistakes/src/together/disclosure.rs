@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn values_are_told_in_full_only() {
+    fn values_are_shown_only_with_full_hints() {
         let detail = FindingDetail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
         let finding = Finding { step: 4, frame: 8, detail };
         let place = DisclosedFinding::Place { step: 4, kind: finding.kind(), place: FindingPlace::Particle(2) };
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
+    fn reports_grow_with_the_hints_and_show_values_only_with_full() {
         let (_, scene) = probe_scenes(Assignment::DEFAULT).swap_remove(0);
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);

@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn a_scene_beyond_a_starter_library_is_said_to_be() {
+    fn a_scene_beyond_a_starter_library_is_reported() {
         let vortex = "<vortexforce i=\"0\" j=\"1\" kbs=\"1\" kvc=\"1\"/>";
         assert_eq!(unknown(Assignment::T1M2, "symplectic-euler", vortex), ["programs of T1M2 ignore <vortexforce>"]);
         assert!(unknown(Assignment::T1M3, "symplectic-euler", vortex).is_empty());

@@ -121,7 +121,7 @@ fn names_that_do_not_exist() {
 }
 
 #[test]
-fn what_was_probably_meant_is_not_missed() {
+fn similar_names_are_suggested() {
     // A misspelled name causes no further messages such as `no integrator`, `no px` or an index out of range.
     assert_eq!(
         judged(
@@ -372,7 +372,7 @@ fn methods_that_do_not_go_together() {
 }
 
 #[test]
-fn rigid_bodies_are_refused() {
+fn rigid_bodies_are_rejected() {
     assert_eq!(
         judged("<scene><simtype type='rigid-body'/><rigidbodyvertex x='0'/><rigidbody p='0' p='1'/></scene>"),
         "1:23: `type` of simtype is `rigid-body` (rigid bodies are an unfinished stub of the original and are not \

@@ -281,7 +281,7 @@ mod tests {
     }
 
     #[test]
-    fn when_impulses_run_out_the_last_responses_are_not_looked_at_again() {
+    fn the_last_responses_are_not_checked_if_impulses_run_out() {
         let mut log = Log::default();
         stepped(&falling(hybrid(1)), &mut log);
         let passes: Vec<_> = log.lines.iter().filter(|line| line.starts_with("pass")).collect();
@@ -306,7 +306,7 @@ mod tests {
     }
 
     #[test]
-    fn without_handling_no_pair_is_looked_at() {
+    fn without_handling_no_pair_is_tested() {
         let penalty = Collision::Penalty { stiffness: 1.0, thickness: 0.1, detection: CollisionDetection::AllPairs };
         for collision in [Collision::None, penalty] {
             let mut log = Log::default();
@@ -317,7 +317,7 @@ mod tests {
     }
 
     #[test]
-    fn two_fixed_particles_are_looked_at_too() {
+    fn two_fixed_particles_are_tested_too() {
         let mut scene = scene(vec![
             fixed_copy(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
             fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vortex_force_is_refused_by_implicit_integrators_only() {
+    fn only_implicit_integrators_reject_a_vortex_force() {
         let particles: Vec<Particle> = (0..2).map(|i| particle((f64::from(i), 0.0), (0.0, 0.0), 1.0, 0.1)).collect();
         let mut scene = scene(particles);
         scene.forces.push(Force::Vortex { first: 0, second: 1, strength: 1.0, coupling: 1.0 });

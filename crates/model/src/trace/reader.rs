@@ -202,7 +202,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
+    fn a_frame_beyond_the_limit_is_rejected_before_it_is_in_memory() {
         let layout = Layout { particles: 0, has_impulses: true, has_polynomials: true, steps: 0 };
         for list in [[0, i32::MAX, 0], [0, 1, 1 << 28]] {
             // The list has as many empty polynomials, or coefficients of one polynomial, as there are zero bytes.

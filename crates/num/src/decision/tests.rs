@@ -136,7 +136,7 @@ fn the_exact_examples() {
 }
 
 #[test]
-fn what_is_not_finite_is_borderline() {
+fn values_that_are_not_finite_are_borderline() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for lists in [owned(&[&[bad, 1.0]]), owned(&[&[-1.0], &[1.0, 2.0, bad]])] {
             for units in [0.0, 64.0] {
@@ -330,7 +330,7 @@ proptest! {
 
     /// The sizes range from subnormal numbers to the largest: overflow and underflow never cause a wrong decision.
     #[test]
-    fn extreme_sizes_are_decided_alike(
+    fn extreme_sizes_are_decided_correctly(
         lists in prop::collection::vec(
             prop::collection::vec(number(1070).prop_filter("finite", |value| value.is_finite()), 1..=6),
             1..=3,

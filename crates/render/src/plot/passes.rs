@@ -90,7 +90,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn differing_steps_are_marked_and_said() {
+    fn differing_steps_are_marked_and_listed() {
         let plot = PassPlot { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
         let svg = plot.svg(PlotTarget::Page);
         let words = "2 of 4 steps have a different number of detection passes; the first is step 3 with 3, expected 2";

@@ -70,7 +70,7 @@ fn json_follows_its_schema() {
 }
 
 #[test]
-fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
+fn every_format_lists_skipped_entries_once() {
     let entry = |name: &str, why: &str| SkippedEntry { name: name.to_owned(), reason: why.to_owned() };
     let passed_over = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
     for format in Format::ALL.iter().filter(|format| format.takes_several()) {
@@ -143,7 +143,7 @@ fn prairielearn_says_that_groups_which_are_not_shown_count() {
 
 /// A fact about the upload is stated once, at the top, and not for each scene.
 #[test]
-fn what_is_wrong_with_a_submission_itself_is_said_once() {
+fn faults_of_the_submission_itself_are_stated_once() {
     let sentence = "the upload has no program called FOSSSim; it contains main.cpp, fosssim-sample";
     for format in
         [Format::Text, Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown]
@@ -164,7 +164,7 @@ fn what_is_wrong_with_a_submission_itself_is_said_once() {
 }
 
 #[test]
-fn an_untouched_template_is_told_in_ten_lines() {
+fn an_unchanged_template_is_reported_in_ten_lines() {
     let grades = [samples::unwritten_grade()];
     let text = Format::Text.render(&grades);
     assert!(text.lines().count() <= 10, "{text}");
@@ -187,7 +187,7 @@ fn an_untouched_template_is_told_in_ten_lines() {
 /// One scene confuses a loop that runs one round too few with an empty loop. No format shows explanations that all
 /// scenes together contradict.
 #[test]
-fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
+fn every_format_uses_the_explanation_of_all_scenes() {
     let mut grade = samples::accepted_grade();
     let named = |key: &str, same_as: &[&str]| Explanation {
         key: key.to_owned(),
@@ -223,7 +223,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
 
 /// Every format shows the place of a crash at the top.
 #[test]
-fn what_failing_scenes_have_in_common_is_told_in_every_format() {
+fn every_format_reports_the_common_features_of_failing_scenes() {
     let mut grade = samples::accepted_grade();
     grade.groups[0].scenes[0].result.verdict = Verdict::RuntimeError;
     grade.groups[1].visibility = Visibility::Visible;
@@ -307,7 +307,7 @@ fn text_csv_and_github_read_well() {
 
 /// A program that was run on a hidden scene can choose its failure on a visible one. Only the verdict may be shown.
 #[test]
-fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
+fn with_hidden_groups_students_see_nothing_that_a_program_chose() {
     let failing = |choice: u32| {
         let mut grade = samples::accepted_grade();
         let visible = &mut grade.groups[0].scenes;

@@ -47,7 +47,7 @@ mod tests {
     use fosssim_mistakes::together::immediate_grade;
 
     #[test]
-    fn changes_of_hidden_groups_are_not_told_to_students() {
+    fn changes_of_hidden_groups_are_hidden_from_students() {
         let mut then = samples::accepted_grade();
         then.groups[1].points = Some(0.0);
         then.groups[1].scenes[0].result.verdict = Verdict::TimeLimit;

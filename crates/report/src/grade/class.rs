@@ -230,7 +230,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
+    fn scenes_without_a_verdict_are_not_failures() {
         let grades = [samples::failed_grade(), samples::stopped_grade()];
         assert_eq!(find_hardest(&grades), (Vec::new(), 1));
         assert_eq!(

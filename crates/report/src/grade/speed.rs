@@ -45,7 +45,7 @@ mod tests {
     use fosssim_findings::Verdict;
 
     #[test]
-    fn the_spread_is_told_with_what_it_means() {
+    fn the_spread_is_reported_with_its_meaning() {
         let marking = SpeedMarking { points: 40.0, full_at: 2.0, none_at: 10.0, runs: 5 };
         let said = |points, source| describe_speed(&SpeedGrade { marking, points, source });
         let measured = |ratio, least, most| SpeedSource::Measured(SpeedRatio { ratio, least, most, runs: 5 });

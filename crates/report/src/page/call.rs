@@ -220,7 +220,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_differs_after_the_best_factor_is_marked() {
+    fn differences_after_the_best_factor_are_marked() {
         // The coefficient of t^1 is wrong, and all coefficients are scaled.
         assert_eq!(mark_differences(&[1.0, 2.0, 3.0], &[10.0, 25.0, 30.0]), [false, true, false]);
         assert_eq!(mark_differences(&[1.0, 2.0], &[2.0, 4.0]), [false, false]);

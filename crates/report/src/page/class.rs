@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn who_fails_in_the_same_words_is_found_though_no_mistake_is_named() {
+    fn equal_failures_are_found_without_a_named_mistake() {
         let crash = |scene: usize| (scene > 70).then(|| "the program was killed by signal 11".to_owned());
         let grades = [
             grade("ada", |_| None),

@@ -130,7 +130,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
 
 /// A trace that was not stored completely is not compared with a complete run.
 #[test]
-fn a_proof_is_told_of_whole_traces_only() {
+fn a_proof_is_reported_only_for_complete_traces() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
     let trace = of_mistake(&scene, "pp-contact-reversed");
     let mut rulings = StepRulings::default();
@@ -275,7 +275,7 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
 
 /// The details that a level hides are not in the file at all: neither as text, nor in the viewer's data.
 #[test]
-fn what_the_hints_hide_is_not_in_the_file() {
+fn hidden_details_are_not_in_the_file() {
     let scene = asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml");
     let id = "pe-linear-one-ab";
     let pages = [Hints::None, Hints::Where, Hints::What, Hints::Full].map(|hints| graded(&scene, id, hints));

@@ -51,7 +51,7 @@ mod tests {
     use fosssim_findings::located_failure::FailureKind;
 
     #[test]
-    fn counts_and_ties_are_told() {
+    fn counts_and_ties_are_reported() {
         let content = |family: &'static str, value: Option<[&'static str; 2]>| SceneFeature {
             family: family.into(),
             value: value.map(|words| words.map(Into::into)),

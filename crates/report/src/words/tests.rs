@@ -9,7 +9,7 @@ fn says(reason: Reason) -> String {
 }
 
 #[test]
-fn what_is_there_instead_of_the_program_is_one_sentence() {
+fn files_instead_of_the_program_are_reported_in_one_sentence() {
     let says = |found| says(Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found }));
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     assert_eq!(says(FolderContents::Nothing), "the upload has no program called FOSSSim; it is empty");
@@ -61,7 +61,7 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 }
 
 #[test]
-fn details_are_what_is_told_and_nothing_else() {
+fn details_contain_only_visible_values() {
     let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Undisclosed));
     assert_eq!(list_details(&result), [""; 0]);
     let first = DisclosedFinding::Place { step: 4, kind: FindingKind::Position, place: FindingPlace::Particle(2) };

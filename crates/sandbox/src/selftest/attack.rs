@@ -152,7 +152,7 @@ mod tests {
     }
 
     #[test]
-    fn a_head_without_promise_is_refused() {
+    fn a_head_without_promise_is_rejected() {
         assert!(Attack::parse("a", "// expect: cpu\n").is_err());
         assert!(Attack::parse("a", "// promise: It holds.\n").is_err());
         assert!(Attack::parse("a", "// promise: It holds.\n// expect: cpu\n// nonsense: 1\n").is_err());

@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn who_sweeps_never_takes_what_was_just_claimed() {
+    fn a_sweeper_never_takes_a_claimed_folder() {
         const CLAIMS: usize = 4000;
         let place = tempfile::tempdir().unwrap();
         let done = std::sync::atomic::AtomicBool::new(false);

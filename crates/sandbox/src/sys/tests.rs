@@ -39,7 +39,7 @@ fn a_process_with_threads_is_not_forked() {
 }
 
 #[test]
-fn an_end_that_nobody_holds_is_told_from_something_to_read() {
+fn a_closed_end_is_distinguished_from_readable_data() {
     let (reader, mut writer) = io::pipe().unwrap();
     let look = || poll([Some(reader.as_fd()), None], Duration::ZERO).unwrap()[0];
     assert_eq!(look(), Readiness::Idle);

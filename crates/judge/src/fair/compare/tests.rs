@@ -11,7 +11,7 @@ fn numbers() -> impl FnMut() -> f64 {
 
 /// The quick comparison gives the same result as the complete one, bit for bit.
 #[test]
-fn what_fits_at_once_is_what_a_close_look_says() {
+fn the_quick_comparison_agrees_with_the_complete_one() {
     let mut next = numbers();
     let mut answered = 0;
     for round in 0..20_000 {
@@ -37,7 +37,7 @@ fn what_fits_at_once_is_what_a_close_look_says() {
 /// Polynomials that the quick comparison accepts are also right in the complete one, with the same factor except for
 /// round-off.
 #[test]
-fn what_is_right_at_once_is_right() {
+fn quickly_accepted_polynomials_are_right() {
     let mut next = numbers();
     let mut answered = 0;
     for round in 0..40_000 {
@@ -99,7 +99,7 @@ fn the_wrong_coefficient_is_named_in_spite_of_a_factor() {
 /// Polynomials that the quick comparison rejects for every factor are also wrong in the complete one, whatever the
 /// hints. The quick comparison rejects more than half of the wrong ones.
 #[test]
-fn what_fits_with_no_factor_is_wrong() {
+fn polynomials_without_a_fitting_factor_are_wrong() {
     let mut next = numbers();
     let (mut wrong, mut certain) = (0, 0);
     for round in 0..40_000 {
@@ -151,7 +151,7 @@ fn only_small_leading_coefficients_may_be_missing() {
 
 /// A program that divides polynomials by their size turns round-off into ordinary numbers.
 #[test]
-fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
+fn a_polynomial_of_round_off_may_have_any_value() {
     let right = [1e-16, 0.0].map(|value: f64| BoundedValue { value, bound: 1.0 });
     for logged in [&[] as &[f64], &[1e-11], &[-1.0, 0.3], &[1e100]] {
         assert_eq!(compare(&right, logged, &[1.0]), Ok(Match { scale: None, tolerance_share: 0.0 }), "{logged:?}");
@@ -162,7 +162,7 @@ fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
 
 /// If nothing moves, there is no round-off either.
 #[test]
-fn what_is_exactly_zero_is_zero() {
+fn exact_zeros_must_be_zero() {
     let right = [BoundedValue::from_exact(0.0); 2];
     assert!(compare(&right, &[], &[1.0]).is_ok() && compare(&right, &[0.0, -0.0], &[1.0]).is_ok());
     assert!(compare(&right, &[1e-11], &[1.0]).is_err());
@@ -204,7 +204,7 @@ fn garbage_of_constant_size_check() {
 
 /// Sums that may overflow or underflow are not accepted by the quick comparison, even if they fit.
 #[test]
-fn extreme_sums_are_looked_at_closely() {
+fn extreme_sums_get_the_complete_comparison() {
     let is_clear = |own: f64, logged: f64| Similarity::measure(&[own, -own], &[logged, -logged]).is_clear(true);
     for moderate in [1e-99, 1.0, 1e99] {
         assert!(is_clear(moderate, 1.0) && is_clear(1.0, moderate), "{moderate}");

@@ -157,7 +157,7 @@ mod tests {
 
     /// A polynomial above the lower limit always exceeds round-off, and the limit is not much larger than necessary.
     #[test]
-    fn what_says_something_is_above_round_off() {
+    fn polynomials_above_the_limit_exceed_round_off() {
         let scene = scene(CROWD);
         let mut closest = Closest(&scene, f64::INFINITY);
         let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);

@@ -212,7 +212,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
 
 /// These are factors that the rules do not accept.
 #[test]
-fn what_is_no_positive_number_is_no_factor() {
+fn factors_must_be_positive_numbers() {
     let scene = scene(BOUNCE_SCENE);
     for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
         let forged = change_trace(&scene, |frames| {
@@ -393,7 +393,7 @@ impl Observer for Moved<'_> {
 
 /// The program skips the bodies that have collided in this step, so the polynomials of their pairs are empty.
 #[test]
-fn what_a_response_has_moved_is_not_left_out() {
+fn moved_bodies_may_not_be_skipped() {
     let mut told = 0;
     for (name, scene) in assets() {
         if !matches!(scene.collision, fosssim_model::scene::Collision::ContinuousTime { .. }) {
@@ -436,7 +436,7 @@ const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explic
 /// The two forms of the approach polynomial differ only in t^3, and a small factor makes the library drop this
 /// coefficient.
 #[test]
-fn what_is_gone_is_no_mixture_of_forms() {
+fn dropped_coefficients_do_not_mix_forms() {
     struct Edges(f64);
     impl StepController for Edges {
         fn adjust_polynomials(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
@@ -461,7 +461,7 @@ fn what_is_gone_is_no_mixture_of_forms() {
 
 /// In the first round of a hybrid step no response has moved a body, so a wrong formula is reported there.
 #[test]
-fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
+fn formulas_are_reported_in_the_first_pass_of_a_hybrid_step() {
     let mut told = 0;
     for (name, scene) in assets() {
         if !matches!(scene.collision, fosssim_model::scene::Collision::Hybrid { .. }) {

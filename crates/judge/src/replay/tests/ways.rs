@@ -115,7 +115,7 @@ fn both_ways_say_the_same_to_the_last_field() {
 /// Two distant balls move alike. Their relative motion is round-off, from which the root finder makes a collision with
 /// some factors and none with others. The reference has none, and the program misses no real collision.
 #[test]
-fn what_only_the_root_finder_sees_is_no_missed_collision() {
+fn collisions_of_the_root_finder_alone_are_not_missed() {
     let scene = scene(
         r#"<scene><duration time="3"/><integrator type="explicit-euler" dt="1"/>
         <collision type="continuous-time" COR="0.7"/>
@@ -165,7 +165,7 @@ fn audited_searches_judge_the_same() {
 }
 
 #[test]
-fn what_the_original_rejects_of_itself_is_found() {
+fn steps_in_which_the_original_rejects_itself_are_found() {
     let scene = scene(LARGE);
     let trace = change_trace(&scene, |_| {});
     let outcome = replay::judge(&scene, &trace[..], &Options::default(), &mut ());

@@ -85,7 +85,7 @@ mod tests {
 
     /// A mistake that is not tried on a scene would not change the right trace of the scene.
     #[test]
-    fn what_a_scene_can_not_show_leaves_its_trace_as_it_is() {
+    fn inapplicable_mistakes_do_not_change_the_trace() {
         let mut left_out = 0;
         let mut scenes: Vec<Scene> = probe_scenes(Assignment::T2M2).into_iter().map(|(_, scene)| scene).collect();
         let bare = scenes.iter().step_by(5).cloned();

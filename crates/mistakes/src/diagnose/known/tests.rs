@@ -60,7 +60,7 @@ fn mistakes_of_all_stages_are_named() {
 }
 
 #[test]
-fn correct_variants_are_never_accused() {
+fn correct_variants_are_never_reported() {
     for row in student::CATALOGUE.iter().filter(|row| row.kind == student::RowKind::Variant) {
         assert_eq!(first(row.id), None, "{}", row.id);
     }
@@ -170,7 +170,7 @@ fn are_named(scene: &Scene, ids: &[&str]) {
 }
 
 #[test]
-fn what_is_not_written_yet_is_said_by_stage() {
+fn unwritten_code_is_reported_by_stage() {
     are_named(&scene(), &["pp-empty", "pe-empty", "ph-empty"]);
     are_named(&scene(), &["pe-empty", "ph-empty"]);
     are_named(&scene(), &["pp-empty", "pe-empty"]);

@@ -26,7 +26,7 @@ fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
 }
 
 #[test]
-fn wrong_pairs_are_told_with_what_they_have_in_common() {
+fn wrong_pairs_are_reported_with_their_common_properties() {
     let scenes = scenes();
     for (id, kind, times, word) in [
         ("near-pairs-first-missing", PairKind::ParticleParticle, 0, "first body"),
@@ -84,7 +84,7 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
 
 /// A property is not a cause if there are hardly any right pairs for comparison.
 #[test]
-fn a_trait_without_right_pairs_is_not_told() {
+fn a_property_without_right_pairs_is_not_reported() {
     let traits_of = |[wrong, right, with]: [u64; 3]| {
         let traits = vec![[wrong, with, 0]; traits::variants().count()];
         pair_traits(&PairCounts { kind: PairKind::ParticleParticle, counts_by_times: [wrong, right, 0], traits }, 0)

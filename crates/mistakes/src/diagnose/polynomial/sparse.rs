@@ -261,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_that_cannot_be_told_apart_are_all_reported() {
+    fn indistinguishable_columns_are_all_reported() {
         let mut all = columns(6, 50);
         all[4] = all[1].iter().map(|value| 2.0 * value).collect();
         let found = DesignMatrix::new(&all, |_| true).find_supports(&all[1], |_| true);

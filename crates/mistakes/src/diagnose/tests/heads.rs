@@ -88,7 +88,7 @@ fn the_words_are_the_majority_s_and_the_count_is_of_those_who_agree() {
 /// With equal radii, half of their sum is equal to one radius. The scenes with other radii show which of the two the
 /// program uses.
 #[test]
-fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
+fn a_named_mistake_is_tried_on_all_traces_before_a_second_one() {
     let half = letter(Subject::ParticleOverlap, "half");
     let both = ["ParticleOverlap/pp-one-radius/", "ParticleOverlap/letter/half"];
     let mut traces = vec![vec![half.clone()]; 3];
@@ -116,7 +116,7 @@ fn a_stage_may_be_the_second_mistake() {
 }
 
 #[test]
-fn what_most_traces_speak_against_is_not_told() {
+fn mistakes_that_most_traces_contradict_are_not_reported() {
     let guess = letter(Subject::EdgeOverlap, "a");
     let mut traces = vec![vec![unexplained(Subject::EdgeOverlap)]; 6];
     traces.push(vec![guess.clone()]);
@@ -205,7 +205,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
 
 /// Polynomials that are reported with another mistake are not reported again.
 #[test]
-fn what_is_told_second_is_not_told_once_more() {
+fn a_second_mistake_is_not_reported_twice() {
     let (empty, cut) = (row("failsafe-empty", &[]), letter(Subject::EdgeOverlap, "a"));
     let mut traces = vec![vec![empty]; 6];
     traces.extend(vec![vec![cut.clone()]; 7]);
@@ -226,7 +226,7 @@ fn a_stage_of_one_trace_is_no_second_mistake() {
 
 /// A trace that needs two mistakes is not explained by the single mistake that the others name.
 #[test]
-fn what_a_trace_needs_besides_is_told() {
+fn additional_mistakes_of_a_trace_are_reported() {
     let (spring, drag) = (row("spring-no-rest-length", &[]), row("drag-mass", &[]));
     let mut traces = vec![vec![spring.clone()]; 3];
     traces.push(vec![spring.clone(), drag.clone()]);
@@ -281,7 +281,7 @@ fn forms_are_intersected_over_traces() {
 
 /// If every coefficient of a detection is zero, the detection is not written yet. The same holds for the loop.
 #[test]
-fn what_the_starter_leaves_is_not_written_yet() {
+fn unchanged_starter_code_is_not_written_yet() {
     let zero = |subjects: &[Subject]| {
         let found = PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero));
         statement("all-zero", ExplanationTopic::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
@@ -317,7 +317,7 @@ fn another_mistake_has_its_own_exact_form() {
 }
 
 #[test]
-fn where_numbers_end_comes_behind_what_is_proven() {
+fn the_first_nan_comes_after_proven_mistakes() {
     let end = |step, stage| {
         let found = NonFiniteValue { step: Some(step), stage, is_nan: true, recovers: false };
         statement(Explanation::NOT_FINITE, ExplanationTopic::NotFinite(found), (0, 0), &[])

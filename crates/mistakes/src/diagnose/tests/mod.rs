@@ -12,7 +12,7 @@ mod states;
 
 /// A mistake in all polynomials, which is also found in the steps without other mistakes, is one mistake, not two.
 #[test]
-fn a_mistake_beside_another_is_told_once() {
+fn a_mistake_next_to_another_is_reported_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));
     let author = rows.iter().fold(Student::default(), |student, row| student.with_mistake(Some(row.mistake)));
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2/HolisticTests");

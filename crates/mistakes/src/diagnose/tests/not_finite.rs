@@ -58,7 +58,7 @@ fn spoil(frames: &mut [LenientFrame], bodies: &[usize]) {
 }
 
 #[test]
-fn nan_is_told_with_its_step_and_stage() {
+fn nan_is_reported_with_its_step_and_stage() {
     let struck = scene("edges-struck");
     assert!(matches!(struck.collision, Collision::ContinuousTime { .. }));
     let right = frames(&struck);
@@ -116,7 +116,7 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
 
 /// A value in only one record was not made by a step, or did not affect the next one.
 #[test]
-fn numbers_that_are_finite_again_are_told_as_such() {
+fn numbers_that_become_finite_again_are_reported() {
     let struck = Scene { duration: 3.0, ..scene("edges-struck") };
     let mut changed = frames(&struck);
     changed[2].state.positions[0] = f64::NAN;

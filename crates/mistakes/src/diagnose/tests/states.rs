@@ -28,7 +28,7 @@ fn right(scene: &Scene) -> Vec<u8> {
 }
 
 #[test]
-fn positions_that_do_not_follow_from_velocities_are_told_with_their_factor() {
+fn wrong_positions_are_reported_with_their_factor() {
     let scene = scene(FALL);
     let numbers: Vec<f64> =
         right(&scene).chunks_exact(8).map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight bytes"))).collect();
@@ -57,7 +57,7 @@ fn positions_that_do_not_follow_from_velocities_are_told_with_their_factor() {
 
 /// Only the test of overlap uses radii.
 #[test]
-fn collisions_of_bodies_that_are_apart_are_told() {
+fn collisions_of_separate_bodies_are_reported() {
     let trace = right(&scene(&BALLS.replace("radius=\"0.3\"", "radius=\"0.36\"")));
     let told = explain(&scene(BALLS), &trace);
     let fault = StageFault::Overlaps { kind: Some(PairKind::ParticleParticle), wrong: WrongDecisions::Superfluous };

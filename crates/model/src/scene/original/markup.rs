@@ -295,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_an_element_is_skipped() {
+    fn nodes_that_are_not_elements_are_skipped() {
         let text = "\u{feff}<?xml version='1.0'?><!DOCTYPE scene [ <!ELEMENT [a] (b)> ]><!-- <scene> -->\
                     <scene>text<![CDATA[<b/>]]><!whatever><?pi?><a/></scene>";
         assert_eq!(names(text), Ok(Some(vec!["a".into()])));

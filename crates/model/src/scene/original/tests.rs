@@ -256,7 +256,7 @@ fn the_order_of_evaluation_decides_which_message_comes() {
 }
 
 #[test]
-fn foreign_memory_is_refused() {
+fn foreign_memory_is_rejected() {
     for (inner, text) in [
         ("<edge i='0' j='2'/>", "edge 0 names particle 2, but the scene has 2"),
         ("<edge i='-1' j='1'/>", "edge 0 names particle -1, but the scene has 2"),

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_scalar_fails() {
+    fn values_that_are_not_scalars_fail() {
         for text in ["", " ", "x", "+", "-", ".", ".e5", "+-1", "inf", "nan", "1e", "1e+", "1ex", "1e400", "-1e400"] {
             assert_eq!(parse_scalar(text.as_bytes()), None, "{text}");
         }

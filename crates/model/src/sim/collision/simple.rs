@@ -132,7 +132,7 @@ mod tests {
 
     /// Omitting pairs that are apart changes no bit.
     #[test]
-    fn who_asks_about_no_pair_gets_the_same_velocities() {
+    fn velocities_do_not_depend_on_observed_pairs() {
         let mut numbers = NumberSource(3);
         let mut balls = Vec::new();
         for _ in 0..80 {

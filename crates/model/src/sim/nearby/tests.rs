@@ -162,7 +162,7 @@ fn a_long_edge_looks_at_what_lies_along_it() {
 }
 
 #[test]
-fn what_is_near_everything_is_not_listed() {
+fn objects_near_everything_are_not_listed() {
     let balls = 3000_usize;
     let scene = scene((0..balls).map(|_| particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.5)).collect());
     let mut nearby = NearbyPairs::new(&scene, 0.0);

@@ -259,7 +259,7 @@ fn every_finding_has_its_sentence() {
 /// A known mistake is explained by its row: the sentence, its exact form, and where to search, with the letters'
 /// meaning between them.
 #[test]
-fn a_known_mistake_is_told_by_its_row() {
+fn a_known_mistake_is_explained_by_its_row() {
     let row = find("pe-square-no-eh").expect("a row");
     let details_of_row =
         vec![Detail::Term(row.id.into()), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::SearchArea(row.area)];

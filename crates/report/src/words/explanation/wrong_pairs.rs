@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn each_kind_of_pair_is_told_by_how_many_are_wrong() {
+    fn each_kind_of_pair_is_reported_with_its_wrong_pairs() {
         let [particles, edges, half_planes] = PairKind::ALL;
         let told = |kinds: [PairCounts; 3]| describe(&WrongPairs { first: None, counts_by_kind: kinds.into() });
         assert_eq!(

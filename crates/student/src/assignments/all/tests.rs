@@ -27,7 +27,7 @@ fn every_sentence_is_one_and_no_two_rows_are_the_same() {
 }
 
 #[test]
-fn what_is_wrong_is_said_without_a_formula() {
+fn mistakes_are_described_without_a_formula() {
     let telling: Vec<String> = all_rows()
         .filter_map(|row| Some(format!("{}: {} in {}", row.id, find_formula(row.summary)?, row.summary)))
         .collect();

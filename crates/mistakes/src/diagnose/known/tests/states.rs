@@ -172,7 +172,7 @@ fn forces_that_are_not_cleared_between_steps_are_named() {
 /// Each scene has another arithmetic: forces summed in another order, products fused with sums, or states with the
 /// round-off of another solver.
 #[test]
-fn correct_programs_of_these_milestones_are_accused_of_nothing() {
+fn correct_programs_of_these_milestones_have_no_explanation() {
     for (index, (name, scene)) in scenes().into_iter().enumerate() {
         let trace = match index % 3 {
             0 => {

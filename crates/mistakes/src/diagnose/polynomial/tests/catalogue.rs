@@ -121,7 +121,7 @@ const ACCUSED_IF_ASKED: [&str; 4] =
     ["normalized-largest", "normalized-norm", "normalized-per-pair", "interpolated-all"];
 
 #[test]
-fn correct_variants_are_not_accused() {
+fn correct_variants_are_not_reported() {
     let is_known = |id: &str| FALSE_POSITIVES.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
     for style in [Style::General, Style::Slow, Style::Plain] {
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {

@@ -535,7 +535,7 @@ fn small_slips_in_quadratics_are_named() {
 /// A mistake in only half of the pairs is reported with its share. An error that is no simple mistake is reported as
 /// such.
 #[test]
-fn what_is_not_reproduced_everywhere_says_so() {
+fn partly_reproduced_mistakes_are_marked() {
     let partly = explain(&samples(PairKind::ParticleEdge, 300, |motion| {
         let mut lists = edge_lists(motion);
         if lists[1][2] > 0.0 {

@@ -98,7 +98,7 @@ fn lanes_change_no_bit_and_no_count() {
 /// Pairs with numbers that are too large for lanes or not finite are computed one by one. A response may lead to such
 /// numbers.
 #[test]
-fn what_is_too_large_for_lanes_is_the_same_as_well() {
+fn values_too_large_for_lanes_give_the_same_result() {
     let mut numbers = NumberSource(13);
     for size in [1e47, 1e49, 1e160, f64::NAN] {
         for _ in 0..20 {

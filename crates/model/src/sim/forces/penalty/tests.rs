@@ -113,7 +113,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
 
 /// Two boxes overlap on x and y, but not on the diagonals, which count only in scenes with edges.
 #[test]
-fn where_there_are_edges_boxes_have_four_axes() {
+fn with_edges_boxes_have_four_axes() {
     let x = [0.0, 0.0, 0.18, 0.18, 5.0, 0.0, 6.0, 0.0];
     let mut scene = scene(x.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
     assert_eq!(searched(&scene, &[&x]), [[0, 1]]);
