@@ -308,7 +308,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         let class = workspace.run(["grade", "one", "--suite", "suite.toml", "--output", "one/grades"]);
         assert_eq!(names(&class), expected(others));
         assert!(class.err().contains("skipped mallory: this is a link"), "{}", class.shown());
-        assert!(class.err().contains("skipped .dotted: its name begins with a dot"), "{}", class.shown());
+        assert!(class.err().contains("skipped .dotted: the name begins with a dot"), "{}", class.shown());
         // The output has a row for each submission and a summary of the class. The scenes are in the folder, and are
         // shown on request.
         assert!(class.out().lines().count() < 25 && class.out().contains("Class: 4 submissions"), "{}", class.out());
