@@ -76,8 +76,19 @@ impl Diagnosis {
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
         }
-        for case in &self.cases {
-            let _ = writeln!(text, "{}", render_head(case, style));
+        for (place, case) in self.cases.iter().enumerate() {
+            // A note that many traces have, such as a crash, is written once.
+            let is_alike = |one: &&Case| {
+                case.note.is_some()
+                    && case.explanations.is_empty()
+                    && one.explanations.is_empty()
+                    && case.note == one.note
+            };
+            if self.cases[..place].iter().any(|one| is_alike(&one)) {
+                continue;
+            }
+            let more = self.cases[place + 1..].iter().filter(is_alike).count();
+            let _ = writeln!(text, "{}", render_head(case, more, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
                 text += &render_mistakes(std::slice::from_ref(other), style);
             }
@@ -96,10 +107,14 @@ impl Diagnosis {
     }
 }
 
-fn render_head(case: &Case, style: Style) -> String {
+/// Renders the line of a trace. It also stands for `more` traces with the same note.
+fn render_head(case: &Case, more: usize, style: Style) -> String {
     let verdict =
         if case.accepted { style.paint(TextStyle::Right, "right") } else { style.paint(TextStyle::Wrong, "wrong") };
     let mut line = format!("{verdict}  {}", case.scene);
+    if more > 0 {
+        let _ = write!(line, " and {}", format_count(more as u64, "more scene"));
+    }
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
     }
@@ -190,5 +205,29 @@ view! {
         },
         /// Likely mistakes, the likeliest first.
         explanations: Vec<ExplanationView> = case.explanations.iter().map(ExplanationView::from).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_crash_in_many_scenes_is_one_line() {
+        let case = |scene: &str, note: Option<&str>| Case {
+            scene: scene.to_owned(),
+            trace: "FOSSSim".to_owned(),
+            accepted: note.is_none(),
+            note: note.map(str::to_owned),
+            first: None,
+            explanations: Vec::new(),
+        };
+        let cases = [("a", Some("no trace")), ("b", None), ("c", Some("no trace")), ("d", None)];
+        let cases = cases.map(|(scene, note)| case(scene, note)).to_vec();
+        let text = Diagnosis { cases, ..Diagnosis::default() }.text(Style::Plain);
+        assert_eq!(
+            text,
+            "2 of 4 traces are wrong by the fair rules.\n\nwrong  a and 1 more scene: no trace\nright  b\nright  d\n"
+        );
     }
 }
