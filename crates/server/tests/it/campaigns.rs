@@ -105,7 +105,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
     let told = number(
         &fresh,
         "SELECT count(*) AS n FROM event WHERE kind = 'grade changed'
-         AND text LIKE 'another rule: %, now v, %0 points'",
+         AND text LIKE 'another rule: %; now v, %0 points'",
     );
     assert_eq!(told.await, changed, "entries have the grades before and after");
     // Changes are listed page by page.

@@ -72,7 +72,7 @@ pub(in crate::domain) async fn apply(
         SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
            CAST(? AS TEXT) || ': ' || coalesce(",
         grade_text!("old"),
-        ", 'no grade') || ', now ' || ",
+        ", 'no grade') || '; now ' || ",
         grade_text!("result"),
         "
         FROM result LEFT JOIN grade ON grade.submission = result.submission
