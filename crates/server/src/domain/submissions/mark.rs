@@ -51,6 +51,8 @@ pub struct Overview {
     pub students: i64,
     /// The number of students who have submitted something.
     pub handed_in: i64,
+    /// The number of students with an accepted submission.
+    pub accepted: i64,
     /// The number of submissions to the assignment.
     pub submissions: i64,
     /// The number of students' requests for a review that are not answered.
@@ -61,7 +63,7 @@ pub struct Overview {
     pub slots: i64,
 }
 
-from_row! { Overview { students, handed_in, submissions, requests, regrades, slots } }
+from_row! { Overview { students, handed_in, accepted, submissions, requests, regrades, slots } }
 from_row! { Request { submission, number, login, text = "request", requested_at } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
@@ -251,6 +253,7 @@ impl Member {
         }
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT count(DISTINCT member.account) AS handed_in, count(*) AS submissions,
+            count(DISTINCT CASE WHEN result.code = 'AC' THEN member.account END) AS accepted,
             (SELECT count(*) FROM member WHERE member.course = ? AND member.role = 'student') AS students,
             (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
                 WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,
@@ -259,6 +262,7 @@ impl Member {
                 WHERE seen_at > {now} - ? AND seen_at <= {now} + ?) AS slots
             FROM submission LEFT JOIN member ON member.account = submission.account AND member.course = ?
                AND member.role = 'student'
+            LEFT JOIN grade ON grade.submission = submission.id LEFT JOIN result ON result.id = grade.result
             WHERE submission.assignment = ?";
         let (recent, id) = (health::recency_millis(&self.app.0.policy), assignment.id);
         Ok(transaction.find(statement, values![self.course, id, id, recent, recent, self.course, id]).await?)

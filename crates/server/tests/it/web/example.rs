@@ -25,7 +25,8 @@ async fn two_commands_and_an_upload(fresh: Fresh) {
     // An administrator sees how much is in a course, and who is missing; staff, how many have handed in.
     let courses = admin.get("/admin").expect(200).text();
     assert!(courses.contains("\"submissions\">1<") && courses.contains("nobody: <a"), "{courses}");
-    assert!(admin.get("/c/example").expect(200).text().contains(">1 of 1<"));
+    let course = admin.get("/c/example").expect(200).text();
+    assert!(course.contains(">1 of 1<") && course.contains("\"accepted\">0<"), "{course}");
     let class = admin.get("/c/example/a/m1/class").expect(200).text();
     assert!(class.contains("aria-label=\"Points of the class: 0 to 10 %: "), "{class}");
     // Started again it makes no second one, and anybody who has signed in needs no link.
