@@ -24,7 +24,7 @@ impl PageHost for Memory<'_> {
 }
 
 /// Returns doubles as bytes.
-fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
+fn pack_numbers<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
     PyBytes::new_with(py, 8 * numbers.len(), |into| {
         for (place, number) in into.chunks_exact_mut(8).zip(numbers) {
             place.copy_from_slice(&number.to_ne_bytes());
@@ -33,7 +33,7 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>>
     })
 }
 
-fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
+fn read_scene(name: &str, xml: &[u8]) -> PyResult<Scene> {
     match scene::read(name, xml) {
         Ok(LoadedScene { scene, .. }) => Ok(scene),
         Err(refused) => Err(PyValueError::new_err(scene_problems::render_errors(name, xml, &refused))),
@@ -65,7 +65,7 @@ mod _native {
         ) -> PyResult<Vec<Bound<'py, PyBytes>>> {
             let joined = parts::join_parts(&request.iter().map(|part| &part[..]).collect::<Vec<_>>());
             let answer = py.detach(|| self.0.answer(&joined, &Memory(&trace)));
-            let parts = parts::split(&answer).ok_or_else(|| PyValueError::new_err("the answer is cut"))?;
+            let parts = parts::split(&answer).ok_or_else(|| PyValueError::new_err("the answer is incomplete"))?;
             Ok(parts.iter().map(|part| PyBytes::new(py, part)).collect())
         }
     }
@@ -78,7 +78,7 @@ mod _native {
         xml: PyBackedBytes,
         trace: PyBackedBytes,
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>, Option<String>)> {
-        let scene = read(name, &xml)?;
+        let scene = read_scene(name, &xml)?;
         let (positions, velocities, fault) = py.detach(|| {
             let mut reader = Reader::from_slice(&trace, Layout::for_scene(&scene));
             let (mut frame, mut positions, mut velocities) = (Frame::default(), Vec::new(), Vec::new());
@@ -94,7 +94,7 @@ mod _native {
             };
             (positions, velocities, fault)
         });
-        Ok((bytes(py, &positions)?, bytes(py, &velocities)?, fault))
+        Ok((pack_numbers(py, &positions)?, pack_numbers(py, &velocities)?, fault))
     }
 
     /// Returns the logs of all readable records: impulses, polynomials and coefficients, each packed as in
@@ -106,32 +106,32 @@ mod _native {
         xml: PyBackedBytes,
         trace: PyBackedBytes,
     ) -> PyResult<[Bound<'py, PyBytes>; 3]> {
-        let scene = read(name, &xml)?;
+        let scene = read_scene(name, &xml)?;
         let [impulses, polynomials, coefficients] = py.detach(|| {
             let layout = Layout::for_scene(&scene);
             let mut reader = Reader::from_slice(&trace, layout);
             let (mut frame, mut record, mut before) = (Frame::default(), 0_u64, None);
             let (mut impulses, mut polynomials, mut coefficients) = (Vec::new(), Vec::new(), Vec::new());
             // The labels of the record's step.
-            let mut of_step: Vec<PolynomialLabel> = Vec::new();
+            let mut step_labels: Vec<PolynomialLabel> = Vec::new();
             while let Ok(true) = reader.next(&mut frame) {
-                let place = [record.to_ne_bytes(), u64::from(layout.step_of_record(record)).to_ne_bytes()].concat();
+                let position = [record.to_ne_bytes(), u64::from(layout.step_of_record(record)).to_ne_bytes()].concat();
                 for impulse in &frame.impulses {
-                    impulses.extend_from_slice(&place);
+                    impulses.extend_from_slice(&position);
                     impulses.extend([impulse.kind, impulse.first, impulse.second].map(i32::to_ne_bytes).as_flattened());
                     let numbers = [impulse.normal.x, impulse.normal.y, impulse.time];
                     impulses.extend(numbers.map(f64::to_ne_bytes).as_flattened());
                 }
                 if let Some(before) = before.take() {
-                    of_step = collect_labels(&scene, &before);
+                    step_labels = collect_labels(&scene, &before);
                 }
-                let is_known = of_step.len() >= frame.polynomials.len();
+                let is_known = step_labels.len() >= frame.polynomials.len();
                 for (number, numbers) in frame.polynomials.iter().enumerate() {
-                    let label = of_step.get(number).filter(|_| is_known);
+                    let label = step_labels.get(number).filter(|_| is_known);
                     let label = label.map_or([-1; 4], |PolynomialLabel { pair, number, .. }| {
                         [pair.kind.code(), pair.first as i32, pair.second as i32, *number as i32]
                     });
-                    polynomials.extend_from_slice(&place);
+                    polynomials.extend_from_slice(&position);
                     polynomials.extend(label.map(i32::to_ne_bytes).as_flattened());
                     let ends = [coefficients.len() / 8, numbers.len()].map(|count| (count as u64).to_ne_bytes());
                     polynomials.extend(ends.as_flattened());
@@ -156,15 +156,15 @@ mod _native {
         name: &str,
         xml: PyBackedBytes,
     ) -> PyResult<((f64, f64, u32, u32), [Bound<'py, PyBytes>; 4], Bound<'py, PyBytes>, Vec<(usize, usize)>)> {
-        let scene = read(name, &xml)?;
+        let scene = read_scene(name, &xml)?;
         let particles = &scene.particles;
-        let both = |vector: Vec2| [vector.x, vector.y];
-        let of = |numbers: Vec<f64>| bytes(py, &numbers);
+        let components = |vector: Vec2| [vector.x, vector.y];
+        let pack = |numbers: Vec<f64>| pack_numbers(py, &numbers);
         let numbers = [
-            of(particles.iter().flat_map(|particle| both(particle.position)).collect())?,
-            of(particles.iter().flat_map(|particle| both(particle.velocity)).collect())?,
-            of(particles.iter().map(|particle| particle.mass).collect())?,
-            of(particles.iter().map(|particle| particle.radius).collect())?,
+            pack(particles.iter().flat_map(|particle| components(particle.position)).collect())?,
+            pack(particles.iter().flat_map(|particle| components(particle.velocity)).collect())?,
+            pack(particles.iter().map(|particle| particle.mass).collect())?,
+            pack(particles.iter().map(|particle| particle.radius).collect())?,
         ];
         let fixed: Vec<u8> = particles.iter().map(|particle| u8::from(particle.fixed)).collect();
         let edges = scene.edges.iter().map(|edge| (edge.first, edge.second)).collect();

@@ -1,49 +1,49 @@
 // One instance of the module. Requests and answers are lists of byte strings, the first of which is JSON. `host` reads
 // dropped files and receives progress.
 function engine(module, host) {
-  let why = null;
-  const bytes = (at, length) => new Uint8Array(exports.memory.buffer, at, length);
+  let panicMessage = null;
+  const bytes = (offset, length) => new Uint8Array(exports.memory.buffer, offset, length);
   const { exports } = new WebAssembly.Instance(module, {
     page: {
       read: (file, offset, into, length) => host.read(file, offset, bytes(into, length)),
       progress: (done, all) => host.progress(done >>> 0, all >>> 0),
-      panicked: (at, length) => {
-        why = new TextDecoder().decode(bytes(at, length).slice());
+      panicked: (offset, length) => {
+        panicMessage = new TextDecoder().decode(bytes(offset, length).slice());
       },
     },
   });
   return (request, ...blobs) => {
     const parts = [new TextEncoder().encode(JSON.stringify(request)), ...blobs];
-    const room = bytes(
+    const input = bytes(
       exports.room(parts.reduce((sum, part) => sum + part.length + 4, 0)),
       parts.reduce((sum, part) => sum + part.length + 4, 0),
     );
-    let at = 0;
+    let offset = 0;
     for (const part of parts) {
-      new DataView(room.buffer, room.byteOffset + at).setUint32(0, part.length, true);
-      room.set(part, at + 4);
-      at += part.length + 4;
+      new DataView(input.buffer, input.byteOffset + offset).setUint32(0, part.length, true);
+      input.set(part, offset + 4);
+      offset += part.length + 4;
     }
-    let begin;
+    let answerAddress;
     try {
-      begin = exports.answer();
+      answerAddress = exports.answer();
     } catch (error) {
       throw new Error(
-        why
-          ? `the checker failed: ${why}; please report this`
+        panicMessage
+          ? `the checker failed: ${panicMessage}; please report this`
           : `the checker failed: ${error.message}; the browser may have too little memory`,
       );
     }
-    const answer = bytes(begin >>> 0, exports.length() >>> 0);
+    const answer = bytes(answerAddress >>> 0, exports.length() >>> 0);
     const view = new DataView(answer.buffer, answer.byteOffset, answer.length);
-    const found = [];
-    for (let place = 0; place < answer.length;) {
-      const length = view.getUint32(place, true);
-      found.push(answer.slice(place + 4, place + 4 + length));
-      place += 4 + length;
+    const answerParts = [];
+    for (let position = 0; position < answer.length;) {
+      const length = view.getUint32(position, true);
+      answerParts.push(answer.slice(position + 4, position + 4 + length));
+      position += 4 + length;
     }
-    const value = JSON.parse(new TextDecoder().decode(found[0]));
+    const value = JSON.parse(new TextDecoder().decode(answerParts[0]));
     if (value.error) throw Object.assign(new Error(value.error), { isAnswer: true });
-    return { value, parts: found.slice(1) };
+    return { value, parts: answerParts.slice(1) };
   };
 }

@@ -57,16 +57,16 @@ const PRESETS = {
 };
 const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.first) };
 
-function controls() {
+function renderFields() {
   const { kind, points, radii, plane } = pair.now,
     { points: names, radii: owners } = PAIRS[kind];
   // Returns a number field and a slider with the same value.
-  const field = (label, list, index, least) => {
+  const field = (label, list, index, minimum) => {
     const value = list[index];
-    const number = el("input", { type: "number", step: "any", min: least ?? false, value, "aria-label": label });
+    const number = el("input", { type: "number", step: "any", min: minimum ?? false, value, "aria-label": label });
     const slider = el("input", {
       type: "range",
-      min: least ?? Math.min(-10, value - 10),
+      min: minimum ?? Math.min(-10, value - 10),
       max: Math.max(10, value + 10),
       step: "0.05",
       "aria-label": `${label}, slider`,
@@ -79,7 +79,7 @@ function controls() {
       if (from.value === "" || !Number.isFinite(from.valueAsNumber)) return;
       list[index] = from.valueAsNumber;
       other.value = from.value;
-      look();
+      updateResult();
     };
     number.addEventListener("input", change(number, slider));
     slider.addEventListener("input", change(slider, number));
@@ -113,7 +113,7 @@ function controls() {
 }
 
 // Draws the pair at the start (lines) and at the end (dashes), with arrows between.
-function sketch() {
+function drawPair() {
   const { kind, points, radii, plane } = pair.now;
   const all = points.flatMap(([x, y, dx, dy], point) => {
     const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)];
@@ -157,23 +157,23 @@ function sketch() {
     );
   }
   for (const t of [1, 0]) {
-    const look = t ? "then" : "now",
+    const className = t ? "then" : "now",
       at = points.map(([x, y, dx, dy]) => [x + t * dx, y + t * dy]);
     if (kind === "pe")
       shapes.push(
         svg("line", {
-          class: `edge ${look}`,
+          class: `edge ${className}`,
           x1: X(at[1][0]),
           y1: Y(at[1][1]),
           x2: X(at[2][0]),
           y2: Y(at[2][1]),
           "stroke-width": Math.max(2, 2 * R(radii[1])),
         }),
-        svg("line", { class: `axis ${look}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]) }),
+        svg("line", { class: `axis ${className}`, x1: X(at[1][0]), y1: Y(at[1][1]), x2: X(at[2][0]), y2: Y(at[2][1]) }),
       );
     const discs = kind === "pp" ? at : [at[0]];
     discs.forEach(([x, y], number) =>
-      shapes.push(svg("circle", { class: look, cx: X(x), cy: Y(y), r: Math.max(1, R(radii[number])) })),
+      shapes.push(svg("circle", { class: className, cx: X(x), cy: Y(y), r: Math.max(1, R(radii[number])) })),
     );
   }
   for (const [x, y, dx, dy] of points)
@@ -189,7 +189,7 @@ function sketch() {
     label.textContent = `x${point + 1}`;
     shapes.push(label);
   });
-  handles().forEach(({ at: [x, y] }, handle) =>
+  listHandles().forEach(({ at: [x, y] }, handle) =>
     shapes.push(
       svg("circle", { class: "handle", cx: X(x), cy: Y(y), r: 5 }),
       svg("circle", { class: "grip", cx: X(x), cy: Y(y), r: 18, "data-handle": handle }),
@@ -200,9 +200,9 @@ function sketch() {
 
 // Returns the places that can be dragged: the tips of displacements, and the points. If a tip and a point are at the
 // same place, the point is found first.
-function handles() {
+function listHandles() {
   const { points, plane } = pair.now;
-  const of = (list, from, base) => ({
+  const createHandle = (list, from, base) => ({
     at: [base[0] + list[from], base[1] + list[from + 1]],
     move: (to) =>
       [0, 1].forEach((axis) => {
@@ -211,15 +211,15 @@ function handles() {
   });
   const zero = [0, 0];
   return [
-    ...points.map((point) => of(point, 2, point)),
-    ...points.map((point) => of(point, 0, zero)),
-    ...(plane ? [of(plane, 2, plane), of(plane, 0, zero)] : []),
+    ...points.map((point) => createHandle(point, 2, point)),
+    ...points.map((point) => createHandle(point, 0, zero)),
+    ...(plane ? [createHandle(plane, 2, plane), createHandle(plane, 0, zero)] : []),
   ];
 }
 
 // Moves a point by mouse, finger or pen to positions with few digits. With the keyboard, readers use the fields and the
 // sliders.
-function drags(paper) {
+function enableDragging(paper) {
   paper.addEventListener("pointerdown", (event) => {
     const handle = event.target.dataset.handle;
     if (handle === undefined) return;
@@ -234,33 +234,35 @@ function drags(paper) {
     const unit = 10 ** Math.floor(Math.log10(size / 100));
     const place = [(event.clientX - box.left) / box.width - 0.5, (0.5 - (event.clientY - box.top) / box.height) / 1.5];
     const to = place.map((part, axis) => Math.round((middle[axis] + part * size) / unit) * unit);
-    handles()[pair.held.handle].move(to);
+    listHandles()[pair.held.handle].move(to);
     for (const list of [...pair.now.points, pair.now.plane ?? []])
       list.forEach((value, index) => {
         list[index] = Number(value.toPrecision(12));
       });
     pair.fields.forEach((fill) => fill());
-    look();
+    updateResult();
   });
   for (const end of ["pointerup", "pointercancel"])
     paper.addEventListener(end, () => {
       if (pair.held) {
         pair.held = null;
-        sketch();
+        drawPair();
       }
     });
 }
-drags($("sketch").ownerSVGElement);
+enableDragging($("sketch").ownerSVGElement);
 
-const number = (value) => (Object.is(value, -0) ? "-0" : String(value));
-function command() {
+const formatNumber = (value) => (Object.is(value, -0) ? "-0" : String(value));
+function formatCommand() {
   const { kind, points, radii, plane } = pair.now;
-  const moving = ([x, y, dx, dy]) => `${number(x)},${number(y)}+${number(dx)},${number(dy)}`;
-  const rest = plane ? [`${number(plane[0])},${number(plane[1])}`, `${number(plane[2])},${number(plane[3])}`] : [];
-  return `fosssim-oracle detect ${[kind, ...points.map(moving), ...rest].join(":")} --radii ${radii.map(number).join(",")}`;
+  const moving = ([x, y, dx, dy]) => `${formatNumber(x)},${formatNumber(y)}+${formatNumber(dx)},${formatNumber(dy)}`;
+  const rest = plane
+    ? [`${formatNumber(plane[0])},${formatNumber(plane[1])}`, `${formatNumber(plane[2])},${formatNumber(plane[3])}`]
+    : [];
+  return `fosssim-oracle detect ${[kind, ...points.map(moving), ...rest].join(":")} --radii ${radii.map(formatNumber).join(",")}`;
 }
 
-function asked() {
+function buildRequest() {
   const { kind, points, radii, plane } = pair.now;
   if (kind === "pp") return { do: "detect", kind, centers: points, radii };
   if (kind === "pe") return { do: "detect", kind, center: points[0], ends: points.slice(1), radii };
@@ -268,55 +270,55 @@ function asked() {
 }
 
 // Requests one answer at a time. If several requests are pending, only the last one is sent.
-async function look() {
-  sketch();
-  $("command").textContent = command();
-  if (pair.looking) {
-    pair.again = true;
+async function updateResult() {
+  drawPair();
+  $("command").textContent = formatCommand();
+  if (pair.isUpdating) {
+    pair.isOutdated = true;
     return;
   }
-  pair.looking = true;
+  pair.isUpdating = true;
   do {
-    pair.again = false;
+    pair.isOutdated = false;
     try {
-      const { value, parts } = await pair.oracle.ask(asked());
+      const { value, parts } = await pair.oracle.ask(buildRequest());
       pair.svg = parts[2];
       pair.json = parts[1];
       $("decision").textContent = value.decision;
       $("decision").className = value.collides ? "hit" : "";
-      $("curves").innerHTML = text(parts[3]);
-      $("words").textContent = text(parts[0]);
+      $("curves").innerHTML = decodeText(parts[3]);
+      $("words").textContent = decodeText(parts[0]);
     } catch (error) {
       $("decision").textContent = error.message;
       $("curves").replaceChildren();
       $("words").textContent = "";
     }
-  } while (pair.again);
-  pair.looking = false;
-  document.documentElement.dataset.looked = command();
+  } while (pair.isOutdated);
+  pair.isUpdating = false;
+  document.documentElement.dataset.looked = formatCommand();
 }
 
 $("preset").addEventListener("change", ({ target }) => {
   pair.now = structuredClone(PRESETS[target.value]);
-  controls();
-  look();
+  renderFields();
+  updateResult();
 });
 $("save-curves").addEventListener("click", () => save("pair.svg", pair.svg, "image/svg+xml"));
 $("save-pair").addEventListener("click", () => save("pair.json", pair.json, "application/json"));
-shown.set("pair", () => {
+panelActions.set("pair", () => {
   if (!$("numbers").children.length) {
-    controls();
-    look();
+    renderFields();
+    updateResult();
   }
 });
 
-open({ "#all": "submission", "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
-unpacked.then(
+openPanel({ "#all": "submission", "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
+compiledModule.then(
   () => {
     document.documentElement.dataset.ready = "";
   },
   (error) =>
-    say(
+    showStatus(
       `This browser can't run the checker: ${error.message}. Use Chrome 103, Firefox 113, Safari 16.4 or newer.`,
       "bad",
     ),

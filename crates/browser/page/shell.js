@@ -1,10 +1,10 @@
 // Code that all parts of the page share: the worker, the tabs, and files to save.
 const $ = (id) => document.getElementById(id);
-const text = (bytes) => new TextDecoder().decode(bytes);
-const bytesOf = (words) => new TextEncoder().encode(words);
-const counted = (count, what) => `${count.toLocaleString("en")} ${what}${count === 1 ? "" : "s"}`;
+const decodeText = (bytes) => new TextDecoder().decode(bytes);
+const toBytes = (words) => new TextEncoder().encode(words);
+const formatCount = (count, what) => `${count.toLocaleString("en")} ${what}${count === 1 ? "" : "s"}`;
 
-const unpacked = (async () => {
+const compiledModule = (async () => {
   const packed = Uint8Array.from(atob($("module").textContent.trim()), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
   return WebAssembly.compile(await new Response(stream).arrayBuffer());
@@ -18,7 +18,7 @@ class Oracle {
   #last = 0;
 
   async ask(request, { blobs = [], files = [], progress = () => {} } = {}) {
-    const module = await unpacked;
+    const module = await compiledModule;
     if (!this.#worker) this.#start();
     const id = ++this.#last;
     return new Promise((resolve, reject) => {
@@ -66,31 +66,31 @@ function save(name, bytes, type) {
 
 // Tabs that follow the ARIA practices: the arrow keys move from one tab to the next.
 const tabs = [...document.querySelectorAll("[role=tab]")];
-const shown = new Map();
-function open(name, focus) {
+const panelActions = new Map();
+function openPanel(name, focus) {
   for (const tab of tabs) {
-    const own = tab.dataset.panel === name;
-    tab.setAttribute("aria-selected", String(own));
-    tab.tabIndex = own ? 0 : -1;
-    $(tab.dataset.panel).hidden = !own;
-    if (own && focus) tab.focus();
+    const isSelected = tab.dataset.panel === name;
+    tab.setAttribute("aria-selected", String(isSelected));
+    tab.tabIndex = isSelected ? 0 : -1;
+    $(tab.dataset.panel).hidden = !isSelected;
+    if (isSelected && focus) tab.focus();
   }
   document.body.classList.toggle("reads", name === "check" && !$("frame").hidden);
-  shown.get(name)?.();
+  panelActions.get(name)?.();
 }
 tabs.forEach((tab, number) => {
-  tab.addEventListener("click", () => open(tab.dataset.panel));
+  tab.addEventListener("click", () => openPanel(tab.dataset.panel));
   tab.addEventListener("keydown", (event) => {
     const to = { ArrowRight: number + 1, ArrowLeft: number - 1, Home: 0, End: tabs.length - 1 }[event.key];
     if (to === undefined) return;
     event.preventDefault();
-    open(tabs[(to + tabs.length) % tabs.length].dataset.panel, true);
+    openPanel(tabs[(to + tabs.length) % tabs.length].dataset.panel, true);
   });
 });
-const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "true").dataset.panel;
+const currentPanel = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "true").dataset.panel;
 
 // The embedded scenes, as options of the list.
-const inside = (async () => {
+const embeddedScenes = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
   $("suite").append(...value.suites.map(({ name, title }) => el("option", { value: name }, title)));
   if (course) {
@@ -101,11 +101,11 @@ const inside = (async () => {
 })();
 // The suite of the course for which the page was made, and the course's own scenes.
 const course = $("course") && JSON.parse($("course").textContent);
-const ownScene = (value) => {
+const findCourseScene = (value) => {
   const [, number] = value.match(/^course:(\d+)$/) ?? [];
   return number && course.scenes[number];
 };
-const choices = async (select) => {
+const addSceneOptions = async (select) => {
   if (course?.scenes.length)
     select.append(
       el(
@@ -116,7 +116,7 @@ const choices = async (select) => {
         ),
       ),
     );
-  for (const { title, groups } of await inside) {
+  for (const { title, groups } of await embeddedScenes) {
     for (const { group, names } of groups) {
       select.append(
         el(

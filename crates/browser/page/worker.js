@@ -1,8 +1,8 @@
 // The worker answers the requests one after the other. Each has the files that it may read.
 let files = [],
-  ask = null,
+  answerRequest = null,
   id = 0,
-  told = 0;
+  lastReport = 0;
 const host = {
   read(number, offset, into) {
     try {
@@ -15,24 +15,24 @@ const host = {
   },
   progress(done, all) {
     const now = performance.now();
-    if (now - told < 100 && done < all) return;
-    told = now;
+    if (now - lastReport < 100 && done < all) return;
+    lastReport = now;
     postMessage({ id, progress: [done, all] });
   },
 };
 onmessage = ({ data }) => {
   id = data.id;
   try {
-    ask ??= engine(data.module, host);
+    answerRequest ??= engine(data.module, host);
     files = data.files;
-    const { value, parts } = ask(data.request, ...data.blobs);
+    const { value, parts } = answerRequest(data.request, ...data.blobs);
     postMessage(
       { id, value, parts },
       parts.map((part) => part.buffer),
     );
   } catch (error) {
     // After a trap, the state of the module's memory is unknown.
-    if (!error.isAnswer) ask = null;
+    if (!error.isAnswer) answerRequest = null;
     postMessage({ id, error: error.message });
   }
 };

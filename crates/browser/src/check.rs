@@ -46,12 +46,12 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
     // If bytes can't be read, this is noticed below.
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
-    let looks_like = detect_file_kind(&start);
+    let file_kind = detect_file_kind(&start);
     let options = Options { threads: 1, uses_fair_rules: request.rules.includes_fair(), ..Options::default() };
-    let (mut told, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
-    let heard = &mut ObserverPair(&mut told, &mut wrong);
-    let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
-    let outcome = &examined.outcome;
+    let (mut progress, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
+    let observers = &mut ObserverPair(&mut progress, &mut wrong);
+    let examination = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, observers);
+    let outcome = &examination.outcome;
     // Judging is reported as complete here. The search for the mistake follows, and may take as long.
     host.progress(scene.step_count(), scene.step_count());
     if let Some(why) = describe_no_verdict(outcome, &request.scene) {
@@ -60,7 +60,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     if let Some(why) = fault.get() {
         return Err(describe_unread(outcome, &request.trace, why));
     }
-    let explanations = if needs_explanation(outcome) { examined.explain() } else { Vec::new() };
+    let explanations = if needs_explanation(outcome) { examination.explain() } else { Vec::new() };
     let check = Check {
         scene: &request.scene,
         trace: &request.trace,
@@ -70,14 +70,14 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         steps: &wrong,
         audit: false,
         tables: false,
-        other_file_kind: looks_like,
+        other_file_kind: file_kind,
     };
     let mut parts = vec![check.json().into_bytes()];
     if request.html {
-        let mut again = (!examined.trace.is_whole()).then(|| open(host, request.file, &fault));
-        let evidence =
-            examined.gather_evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::MAX_NUMBERS);
-        parts.push(page::examined_page(check, &examined, &evidence).into_bytes());
+        let mut second_reading = (!examination.trace.is_whole()).then(|| open(host, request.file, &fault));
+        let evidence = examination
+            .gather_evidence(second_reading.as_mut().map(|trace| trace as &mut dyn Read), evidence::MAX_NUMBERS);
+        parts.push(page::examined_page(check, &examination, &evidence).into_bytes());
     }
     let value = json!({
         "accepted": check.is_accepted(), "verdict": check.verdict(), "difference": check.difference(),
@@ -89,7 +89,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
 pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String> {
     let xml = match (xml, name.strip_prefix("asset:")) {
         (Some(xml), _) => xml,
-        (None, Some(asset)) => scenes::xml(asset)?,
+        (None, Some(asset)) => scenes::find_xml(asset)?,
         (None, None) => return Err("the scene is missing".to_owned()),
     };
     match scene::read(name, xml) {

@@ -24,7 +24,7 @@ pub(crate) enum PairRequest {
 }
 
 impl PairRequest {
-    fn motion(&self) -> Result<PairMotion, String> {
+    fn to_motion(&self) -> Result<PairMotion, String> {
         let moving = |&[x, y, dx, dy]: &[f64; 4]| PointMotion { start: Vec2::new(x, y), shift: Vec2::new(dx, dy) };
         let vector = |&[x, y]: &[f64; 2]| Vec2::new(x, y);
         let not_negative = |radii: &[f64]| match radii.iter().all(|&radius| radius >= 0.0) {
@@ -55,7 +55,7 @@ impl PairRequest {
 /// Examines a pair. The second to fourth parts of the answer are what `detect --format text`, `json` and `svg` print.
 /// The last part is the picture for a page that has the style sheet of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
-    let study = Study::for_motion(&request.motion()?)
+    let study = Study::for_motion(&request.to_motion()?)
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::render_picture(&study, &report.title(), embedding).into_bytes();

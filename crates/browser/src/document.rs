@@ -38,7 +38,7 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     );
     let module = STANDARD.encode(compress_to_vec(module, 10));
     let course = course.map_or_else(String::new, |course| {
-        format!("<script type=\"application/json\" id=\"course\">{}</script>\n", course.data())
+        format!("<script type=\"application/json\" id=\"course\">{}</script>\n", course.to_json())
     });
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

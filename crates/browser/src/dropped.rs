@@ -8,7 +8,7 @@ use std::{
 };
 
 /// The number of bytes that are requested from the browser in one call. Each call takes about 0.1 ms.
-const PIECE_BYTES: usize = 1 << 20;
+const CHUNK_BYTES: usize = 1 << 20;
 
 /// The first bytes of each frame in a zstd file.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
@@ -40,7 +40,7 @@ impl Progress for PageProgress<'_> {
 
 /// Returns a reader of a dropped trace. If the file is compressed with zstd, it is decompressed.
 pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
-    let mut bytes = BufReader::with_capacity(PIECE_BYTES, DroppedFile { host, file, offset: 0, fault });
+    let mut bytes = BufReader::with_capacity(CHUNK_BYTES, DroppedFile { host, file, offset: 0, fault });
     // If a file cannot be read, this is reported when it is read.
     match bytes.fill_buf() {
         Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdReader { frames: Frames::Next(bytes), fault }),
@@ -59,7 +59,7 @@ struct DroppedFile<'a> {
 impl Read for DroppedFile<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
-            let _ = self.fault.set("it was changed or removed; drop it again");
+            let _ = self.fault.set("the file was changed or removed; drop it again");
             return Err(io::Error::other("the browser can no longer read the file"));
         };
         self.offset += count as u64;
@@ -67,7 +67,8 @@ impl Read for DroppedFile<'_> {
     }
 }
 
-/// Decompresses a zstd file. If the file is damaged, the copy is at fault, and nothing is known about the trace.
+/// Decompresses a zstd file. If the file is damaged, only this copy is at fault, and the error does not concern the
+/// trace.
 struct ZstdReader<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
@@ -110,8 +111,8 @@ impl<R: BufRead> Frames<R> {
                         return Ok(count);
                     }
                     let (bytes, decoder) = frame.into_parts();
-                    let (told, made) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
-                    if told.is_some() && told != made {
+                    let (stored, computed) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
+                    if stored.is_some() && stored != computed {
                         return Err(io::Error::other("the content differs from the compressed data; copy it again"));
                     }
                     Self::Next(bytes)

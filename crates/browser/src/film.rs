@@ -75,7 +75,7 @@ pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, O
         Ok(LoadedScene { scene, warnings, .. }) => (Some(scene), warnings, 0),
         Err(refused) => (None, refused.list, refused.omitted),
     };
-    let problems: Vec<Value> = problems.iter().map(view).collect();
+    let problems: Vec<Value> = problems.iter().map(problem_view).collect();
     let Some(scene) = scene else { return (json!({ "problems": problems, "more": more }), None) };
     let (film, stopped) = Film::for_scene(scene, host);
     let Film { scene, steps, .. } = &film;
@@ -93,7 +93,7 @@ pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, O
     (value, Some(film))
 }
 
-fn view(problem: &Problem) -> Value {
+fn problem_view(problem: &Problem) -> Value {
     let Problem { severity, line, column, span, message, help, .. } = problem;
     json!({
         "error": *severity == Severity::Error, "line": line, "column": column, "from": span.start, "to": span.end,
@@ -110,7 +110,7 @@ impl Film {
         let (mut extent, mut steps, mut stopped) = (start, 0, None);
         for step in 1..=scene.step_count() {
             if positions.len() + 2 * scene.particles.len() > MAX_NUMBERS {
-                stopped = Some(format!("it is too long to be shown from step {step} on"));
+                stopped = Some(format!("the motion is too long to be shown from step {step} on"));
                 break;
             }
             if let Err(error) = simulation.step(&mut ()) {
@@ -138,14 +138,14 @@ impl Film {
     }
 
     /// Returns one picture, as the second part of the answer.
-    pub(crate) fn draw_requested_picture(&mut self, asked: &PictureRequest) -> PageAnswer {
-        let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
-        let step = asked.step.min(self.steps);
+    pub(crate) fn draw_requested_picture(&mut self, request: &PictureRequest) -> PageAnswer {
+        let size = Size::new(request.width, request.height).map_err(|error| error.to_string())?;
+        let step = request.step.min(self.steps);
         // The page itself shows the step and the time, so the picture does not.
-        let label = !matches!(asked.form, PictureForm::Pixels);
-        let follows =
+        let label = !matches!(request.form, PictureForm::Pixels);
+        let is_earlier =
             |(painter, next, has): &(Painter, u32, bool)| *next <= step && painter.size() == size && *has == label;
-        let last = self.painter.take().filter(follows);
+        let last = self.painter.take().filter(is_earlier);
         let (mut painter, mut next, _) = last.unwrap_or_else(|| (self.painter(size, label), 0, label));
         if self.scene.display.paths.is_empty() {
             next = step;
@@ -155,17 +155,18 @@ impl Film {
             shapes = painter.picture(step, self.step_positions(step), None);
         }
         let background = painter.background();
-        let drawn = || {
+        let rasterize = || {
             let mut raster = Raster::new(size);
             raster.draw(background, &shapes);
             raster
         };
-        let bytes = match asked.form {
+        let bytes = match request.form {
             PictureForm::Svg => svg::render_document(size, background, &format!("step {step}"), &shapes).into_bytes(),
-            PictureForm::Pixels => drawn().rgba().to_vec(),
+            PictureForm::Pixels => rasterize().rgba().to_vec(),
             PictureForm::Png => {
                 let mut packed = Vec::new();
-                write_png(&drawn(), &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
+                write_png(&rasterize(), &mut packed)
+                    .map_err(|error| format!("the picture can't be encoded: {error}"))?;
                 packed
             }
         };
@@ -176,7 +177,7 @@ impl Film {
     /// Returns all pictures as a film, as `render` draws them.
     pub(crate) fn draw_film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
-        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("no such rate")?;
+        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("the rate of pictures is invalid")?;
         let every = self.steps.div_ceil(MAX_PICTURES).max(1);
         let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size, true), Raster::new(size), Vec::new());
@@ -190,19 +191,19 @@ impl Film {
             }
             Ok(())
         };
-        let made = Gif::new(&mut bytes, size, rate, &colors).and_then(|mut film| {
+        let encoded = Gif::new(&mut bytes, size, rate, &colors).and_then(|mut film| {
             draw(&mut |raster| film.write_picture(raster))?;
             film.finish()
         });
-        made.map_err(|error| format!("the film can't be encoded: {error}"))?;
+        encoded.map_err(|error| format!("the film can't be encoded: {error}"))?;
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }
 
     /// Returns the reference's trace. It has the same bytes as the output of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::OnDemand);
-        let kept = TraceBuffer(Vec::new());
-        let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
+        let buffer = TraceBuffer(Vec::new());
+        let mut recorder = Recorder::start(buffer, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.step_count() {
             if let Err(error) = simulation.step(&mut recorder) {
                 return Err(format!("the trace cannot be written: {}", no_result(&error)));
@@ -214,10 +215,10 @@ impl Film {
                 host.progress(step, self.scene.step_count());
             }
         }
-        let (kept, _) = recorder.finish().map_err(|_| {
+        let (buffer, _) = recorder.finish().map_err(|_| {
             "the trace has more than 1 GiB, which is too much for a browser: use the command `fosssim-oracle simulate`"
         })?;
-        Ok(kept.0)
+        Ok(buffer.0)
     }
 }
 

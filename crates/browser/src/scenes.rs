@@ -19,7 +19,7 @@ const MAX_RECORD_BYTES: u64 = 1 << 16;
 
 /// Lists the names of the scenes by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
-    let of = |assignment: Assignment| {
+    let list_groups = |assignment: Assignment| {
         let mut groups = BTreeMap::<&str, Vec<&str>>::new();
         for name in library::names().filter(|name| library::assignment(name) == Some(assignment)) {
             let (group, rest) = name.split_once('/').unwrap_or(("", name));
@@ -28,7 +28,7 @@ pub(crate) fn list() -> Value {
         let groups = groups.into_iter().map(|(group, names)| json!({ "group": group, "names": names }));
         json!({ "title": assignment.definition().title, "groups": groups.collect::<Vec<_>>() })
     };
-    Assignment::list_default_first().into_iter().map(of).collect()
+    Assignment::list_default_first().into_iter().map(list_groups).collect()
 }
 
 /// Returns the name of an embedded suite, such as `t2m2@2`, and its title.
@@ -38,10 +38,10 @@ pub(crate) fn describe_suite(name: &str) -> Value {
 }
 
 /// Returns the XML of a scene. The name is `Group/name`.
-pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
+pub(crate) fn find_xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| {
-        let near = suggestions::find_nearest(name, library::all_names(), 3).join(", asset:");
-        format!("there is no scene asset:{name}; the nearest are asset:{near}")
+        let nearest = suggestions::find_nearest(name, library::all_names(), 3).join(", asset:");
+        format!("there is no scene asset:{name}; the nearest are asset:{nearest}")
     })
 }
 

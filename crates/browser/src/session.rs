@@ -5,7 +5,7 @@ use crate::{
     film::{self, Film},
     parts::{self, PageAnswer},
     scenes,
-    submission::{DroppedSubmission, SceneRequest, SuiteRequest},
+    submission::{SceneRequest, SuiteRequest, UploadedSubmission},
 };
 use fosssim_grading::{library, plan};
 use serde::Deserialize;
@@ -54,7 +54,7 @@ enum PageRequest {
 #[derive(Debug, Default)]
 pub struct PageSession {
     film: Option<Film>,
-    submission: Option<DroppedSubmission>,
+    submission: Option<UploadedSubmission>,
 }
 
 impl PageSession {
@@ -79,7 +79,7 @@ impl PageSession {
                 let suites: Vec<_> = plan::built_in_names().map(|name| scenes::describe_suite(&name)).collect();
                 Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
             }
-            PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
+            PageRequest::Scene { name } => Ok((json!({}), vec![scenes::find_xml(&name)?.to_vec()])),
             PageRequest::Example => {
                 let (scene, trace) = library::FLAWED_TRACE;
                 Ok((json!({ "scene": scene }), vec![trace.to_vec()]))
@@ -97,7 +97,7 @@ impl PageSession {
             PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.draw_film(&kind, host),
             PageRequest::Detect(request) => detect::answer(&request),
             PageRequest::Suite(request) => {
-                let (value, submission) = DroppedSubmission::begin_submission(&request, rest)?;
+                let (value, submission) = UploadedSubmission::begin_submission(&request, rest)?;
                 self.submission = Some(submission);
                 Ok((value, Vec::new()))
             }

@@ -24,8 +24,8 @@ pub(crate) struct SuiteRequest {
     /// The names of the dropped scenes.
     #[serde(default)]
     scenes: Vec<String>,
-    /// Whether the suite's hints limit the output, as in `grade --for student`. This is so if the course made the page
-    /// for students.
+    /// Whether the suite's hints limit the output, as in `grade --for student`. True if the course made the page for
+    /// students.
     #[serde(default)]
     is_for_students: bool,
 }
@@ -41,17 +41,17 @@ pub(crate) struct SceneRequest {
 
 /// A submission that is being graded, and its results so far.
 #[derive(Debug)]
-pub(crate) struct DroppedSubmission {
+pub(crate) struct UploadedSubmission {
     plan: Plan,
     is_for_students: bool,
     results: Vec<Option<SceneResult>>,
 }
 
-impl DroppedSubmission {
+impl UploadedSubmission {
     /// Reads the suite. Returns its groups, and the names of their scenes, in order.
-    pub(crate) fn begin_submission(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
-        let name = asked.suite.clone().unwrap_or_else(plan::default_name);
-        let (text, dropped) = match (&asked.suite, parts.split_first()) {
+    pub(crate) fn begin_submission(request: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
+        let name = request.suite.clone().unwrap_or_else(plan::default_name);
+        let (text, dropped) = match (&request.suite, parts.split_first()) {
             (None, Some((text, dropped))) => {
                 (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
             }
@@ -61,7 +61,7 @@ impl DroppedSubmission {
                 &[][..],
             ),
         };
-        let mut files = |pattern: &str| find_matching_scenes(pattern, &asked.scenes, dropped);
+        let mut files = |pattern: &str| find_matching_scenes(pattern, &request.scenes, dropped);
         let plan = plan::load_with(text, &mut files).map_err(|error| {
             error.problems.iter().map(|(at, words)| format!("suite.toml:{at}: {words}\n")).collect::<String>()
         })?;
@@ -71,20 +71,20 @@ impl DroppedSubmission {
         };
         let groups: Vec<Value> = plan.groups.iter().map(group).collect();
         let results = vec![None; plan.scenes().count()];
-        let is_for_students = asked.is_for_students;
+        let is_for_students = request.is_for_students;
         Ok((json!({ "suite": plan.name, "groups": groups }), Self { plan, is_for_students, results }))
     }
 
     /// Judges the trace of one scene.
-    pub(crate) fn judge_scene(&mut self, asked: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
-        let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
+    pub(crate) fn judge_scene(&mut self, request: &SceneRequest, host: &dyn PageHost) -> PageAnswer {
+        let task = self.plan.scenes().nth(request.number).ok_or("the suite has no scene with this number")?;
         let fault = ReadFault::new();
-        let trace: Box<dyn Read + Send> = match asked.has_trace {
+        let trace: Box<dyn Read + Send> = match request.has_trace {
             true => Box::new(open(host, 0, &fault).take(self.plan.limits.trace)),
             false => Box::new(empty()),
         };
-        let mut heard = PageProgress { host, all: task.scene.step_count() };
-        let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut heard);
+        let mut progress = PageProgress { host, all: task.scene.step_count() };
+        let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut progress);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
         }
@@ -99,7 +99,7 @@ impl DroppedSubmission {
             "steps": result.steps,
             "why": words::summarize(&result),
         });
-        self.results[asked.number] = Some(result);
+        self.results[request.number] = Some(result);
         Ok((value, Vec::new()))
     }
 
@@ -111,24 +111,24 @@ impl DroppedSubmission {
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
         let points =
             |points, most| json!({ "points": grade::format_optional_points(points), "of": grade::format_points(most) });
-        let scene = |scene: &SceneGrade| -> Value {
+        let scene_view = |scene: &SceneGrade| -> Value {
             let (points, most) = (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
             let likely = scene.corrected_explanations.first().map(|mistake| grade::describe_in_scene(scene, mistake));
             json!({ "points": points, "of": most, "likely": likely })
         };
-        let scenes: Vec<Value> = graded.scenes().map(scene).collect();
+        let scenes: Vec<Value> = graded.scenes().map(scene_view).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
-        let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
+        let cause_view = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
             let likely = scenes[0].corrected_explanations.iter();
             let likely: Vec<String> = likely.map(|mistake| grade::describe_in_scene(scenes[0], mistake)).collect();
-            let words = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
-            json!({ "words": words, "scenes": names })
+            let summary = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
+            json!({ "words": summary, "scenes": names })
         };
         let causes: Vec<Value> = grade::group_by_cause(&graded)
             .iter()
             .filter(|scenes| !scenes[0].corrected_explanations.is_empty() || scenes.len() > 1)
-            .map(cause)
+            .map(cause_view)
             .collect();
         let value = json!({
             "causes": causes,

@@ -10,12 +10,12 @@ unsafe extern "C" {
     safe fn read(file: u32, offset: f64, into: *mut u8, length: usize) -> i32;
     safe fn progress(done: u32, all: u32);
     /// Receives the message of a panic. The module traps afterwards.
-    safe fn panicked(words: *const u8, length: usize);
+    safe fn panicked(message: *const u8, length: usize);
 }
 
-struct ThisPage;
+struct BrowserHost;
 
-impl PageHost for ThisPage {
+impl PageHost for BrowserHost {
     #[expect(clippy::cast_precision_loss, reason = "files have fewer bytes than 2^53")]
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize> {
         usize::try_from(read(file, offset as f64, into.as_mut_ptr(), into.len())).ok()
@@ -47,12 +47,12 @@ extern "C" fn answer() -> *const u8 {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         panic::set_hook(Box::new(|fault| {
-            let words = fault.to_string();
-            panicked(words.as_ptr(), words.len());
+            let message = fault.to_string();
+            panicked(message.as_ptr(), message.len());
         }));
     });
     let request = MESSAGE.take();
-    let answer = SESSION.with_borrow_mut(|session| session.answer(&request, &ThisPage));
+    let answer = SESSION.with_borrow_mut(|session| session.answer(&request, &BrowserHost));
     MESSAGE.with_borrow_mut(|message| {
         *message = answer;
         message.as_ptr()

@@ -1,20 +1,20 @@
-//! Formats and reads times for people and for other programs, in UTC.
+//! Formats and parses times, in UTC.
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
-/// Formats a time, given in milliseconds since 1970. Returns an empty text if the calendar does not reach that far.
-fn format(milliseconds: i64, form: &str) -> String {
+/// Formats a time, given in milliseconds since 1970. Returns an empty text if the time is outside the calendar's range.
+fn format_with(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
 
-/// Formats a time for people, such as `2026-11-22 08:45`.
+/// Formats a time to the minute, such as `2026-11-22 08:45`.
 pub fn format_minute(milliseconds: i64) -> String {
-    format(milliseconds, "%Y-%m-%d %H:%M")
+    format_with(milliseconds, "%Y-%m-%d %H:%M")
 }
 
-/// Formats a time for other programs (ISO 8601), such as `2026-11-22T08:45:12.345+00:00`.
+/// Formats a time in ISO 8601, such as `2026-11-22T08:45:12.345+00:00`.
 pub fn format_iso(milliseconds: i64) -> String {
-    format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
+    format_with(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
 /// The ranges of plausible times, in milliseconds since 1970. A number between the two ranges is probably in seconds.
@@ -25,23 +25,23 @@ pub fn is_plausible(milliseconds: i64) -> bool {
     MILLISECOND_RANGES.iter().any(|range| range.contains(&milliseconds))
 }
 
-/// Reads a time in ISO 8601, such as `2026-12-01T23:59:00+01:00`; seconds may be missing, and `Z` is allowed. The time
+/// Parses a time in ISO 8601, such as `2026-12-01T23:59:00+01:00`; seconds may be missing, and `Z` is allowed. The time
 /// zone is required.
-pub fn read(text: &str) -> Option<i64> {
+pub fn parse(text: &str) -> Option<i64> {
     let text = text.trim().replace(' ', "T");
     let text = match text.strip_suffix(['Z', 'z']) {
         Some(utc) => format!("{utc}+00:00"),
         None => text,
     };
-    let read = |form| DateTime::parse_from_str(&text, form).ok();
-    let moment = read("%Y-%m-%dT%H:%M:%S%.f%z").or_else(|| read("%Y-%m-%dT%H:%M%z"))?;
-    Some(moment.timestamp_millis())
+    let parse = |form| DateTime::parse_from_str(&text, form).ok();
+    let time = parse("%Y-%m-%dT%H:%M:%S%.f%z").or_else(|| parse("%Y-%m-%dT%H:%M%z"))?;
+    Some(time.timestamp_millis())
 }
 
-/// Reads a time of a form's field, such as `2026-12-01T23:59`, in a time zone that is `east` minutes east of UTC.
-pub fn read_field(text: &str, east: i64) -> Option<i64> {
+/// Parses the value of a form's time field, such as `2026-12-01T23:59`. Its time zone is `east` minutes east of UTC.
+pub fn parse_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
-    Some(read(&format!("{text}{seconds}"))? - east * 60_000)
+    Some(parse(&format!("{text}{seconds}"))? - east * 60_000)
 }
 
 #[cfg(test)]
@@ -53,13 +53,13 @@ mod tests {
         for text in
             ["2026-11-22T08:40:00Z", "2026-11-22T09:40+01:00", "2026-11-22 03:10:00.000-0530", " 2026-11-22T08:40Z"]
         {
-            assert_eq!(read(text), Some(1_795_336_800_000), "{text}");
+            assert_eq!(parse(text), Some(1_795_336_800_000), "{text}");
         }
         for text in ["2026-11-22T08:40:00", "2026-11-22", "tomorrow", "2026-13-22T08:40:00Z", "1795336859"] {
-            assert_eq!(read(text), None, "{text}");
+            assert_eq!(parse(text), None, "{text}");
         }
-        assert_eq!(read_field("2026-11-22T09:40", 60), Some(1_795_336_800_000));
-        assert_eq!(read_field("", 60), None);
+        assert_eq!(parse_field("2026-11-22T09:40", 60), Some(1_795_336_800_000));
+        assert_eq!(parse_field("", 60), None);
     }
 
     #[test]

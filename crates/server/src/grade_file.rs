@@ -1,8 +1,8 @@
-//! The parts that the service reads of a `grade.json` (`schemas/grade.schema.json`).
+//! The parts of a `grade.json` that the service reads (`schemas/grade.schema.json`).
 use serde::Deserialize;
 use serde_json::Number;
 
-/// A `grade.json` as far as this service reads it.
+/// The parts of a `grade.json` that this service reads.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GradeFile {
     pub(crate) schema: u32,
@@ -21,14 +21,14 @@ pub(crate) struct GradeInFile {
     pub(crate) unfit: Option<String>,
     /// The mistakes that would explain all wrong scenes, the likeliest first.
     #[serde(default)]
-    pub(crate) likely_mistakes: Vec<LikelyInFile>,
+    pub(crate) likely_mistakes: Vec<MistakeInFile>,
     #[serde(default)]
     pub(crate) groups: Vec<GroupInFile>,
 }
 
 /// A likely mistake in a `grade.json`, as a sentence.
 #[derive(Debug, Deserialize)]
-pub(crate) struct LikelyInFile {
+pub(crate) struct MistakeInFile {
     pub(crate) text: String,
 }
 

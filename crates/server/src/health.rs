@@ -24,7 +24,7 @@ pub fn recency_millis(policy: &QueuePolicy) -> i64 {
 /// # Errors
 ///
 /// Fails if the database fails.
-pub async fn note_sign_of_life(
+pub async fn record_report(
     transaction: &mut Transaction,
     (worker, version): (&str, &str),
     token: Option<i64>,
@@ -32,7 +32,7 @@ pub async fn note_sign_of_life(
     fault: Option<&str>,
 ) -> Result<(), DbError> {
     let slots = i64::try_from(slots).unwrap_or(i64::MAX);
-    let fault = fault.map(without_paths);
+    let fault = fault.map(strip_paths);
     let statement =
         "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
         ON CONFLICT (name) DO UPDATE SET version = excluded.version, slots = excluded.slots,
@@ -89,7 +89,7 @@ pub async fn may_claim(
 }
 
 /// Records that the grader failed in a worker that had reported that it can grade.
-pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
+pub(crate) async fn record_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
     transaction.execute(statement, values![fault, worker]).await?;
@@ -97,13 +97,13 @@ pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fa
 }
 
 /// Records that a worker delivered a result.
-pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
+pub(crate) async fn record_result(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
     transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
 }
 
-/// Removes the machine's folders from a message. Of each absolute path, only the last part is kept.
-pub fn without_paths(text: &str) -> String {
+/// Removes the machine's folders from a message. Only the last part of each absolute path is kept.
+pub fn strip_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find('/') {
@@ -136,7 +136,7 @@ mod tests {
             ("add `<duration time=\"...\"/>`: 1 / 2", "add `<duration time=\"...\"/>`: 1 / 2"),
             ("", ""),
         ] {
-            assert_eq!(without_paths(said), told);
+            assert_eq!(strip_paths(said), told);
         }
     }
 }

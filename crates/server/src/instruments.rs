@@ -36,15 +36,15 @@ impl Instruments {
     ///
     /// Fails if Prometheus does not allow a metric's name.
     pub fn new() -> Result<Self, prometheus::Error> {
-        let of_requests = ["method", "route", "status"];
+        let labels = ["method", "route", "status"];
         let duration = HistogramOpts::new(
             "http_request_duration_seconds",
             "Time from a request's head to the head of its answer, by route.",
         );
         let requests = Opts::new("http_requests_total", "Requests that were answered.");
         Ok(Self {
-            requests: IntCounterVec::new(requests, &of_requests)?,
-            seconds: HistogramVec::new(duration.buckets(LATENCY_BUCKETS.into()), &of_requests[..2])?,
+            requests: IntCounterVec::new(requests, &labels)?,
+            seconds: HistogramVec::new(duration.buckets(LATENCY_BUCKETS.into()), &labels[..2])?,
             in_flight: IntGauge::new("http_requests_in_flight", "Requests that are being answered.")?,
         })
     }
@@ -95,18 +95,18 @@ pub struct Metrics {
     pub scores: Vec<(String, i64)>,
     /// The time in milliseconds that the oldest waiting job has waited so far.
     pub oldest: i64,
-    /// The number of workers from which the server has heard recently.
+    /// The number of workers that have reported recently.
     pub workers: i64,
     /// The number of slots of all these workers together.
     pub slots: i64,
     /// The number of workers that claim no jobs because they can't grade.
-    pub aside: i64,
+    pub paused: i64,
     /// The number of workers that are grading at present.
     pub working: i64,
     /// The number of events of each kind that needs attention.
     pub events: Vec<(String, i64)>,
     /// The stored bytes of uploads and reports: of all courses, and of the course with the most bytes.
-    pub kept: [i64; 2],
+    pub stored_bytes: [i64; 2],
     /// The number of submissions that the server has ever received.
     pub submissions: i64,
 }
@@ -145,7 +145,7 @@ impl MetricsPage {
 
     /// Writes what the database counted about the queue.
     fn write_queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
-        let named = |counts: &'_ [(String, i64)], name: &str| {
+        let count_of = |counts: &'_ [(String, i64)], name: &str| {
             counts.iter().find(|(known, _)| known == name).map_or(0.0, |(_, count)| *count as f64)
         };
         for (name, help, counts) in [
@@ -153,26 +153,26 @@ impl MetricsPage {
             ("scores", "Scores for learning platforms by state.", &queue.scores),
         ] {
             let states = ["waiting", "running", "done", "buried", "cancelled"];
-            self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
+            self.gauge(name, help, "state", &states.map(|state| (state, count_of(counts, state))))?;
         }
         let help = "The time that the oldest waiting upload has waited, in seconds.";
         self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
-        let idle = queue.workers - queue.working - queue.aside;
-        let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];
+        let idle = queue.workers - queue.working - queue.paused;
+        let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.paused as f64)];
         let help = "Workers that were seen recently: they grade, wait for a job, or can't grade.";
         self.gauge("workers_by_state", help, "state", &by_state)?;
         for (name, help, value) in [
             ("workers", "Workers that were seen recently.", queue.workers),
-            ("slots", "Their slots.", queue.slots),
-            ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
+            ("slots", "The slots of these workers.", queue.slots),
+            ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.paused),
         ] {
             self.write_number(name, help, value as f64)?;
         }
-        let kept = [("all", queue.kept[0] as f64), ("largest course", queue.kept[1] as f64)];
-        self.gauge("kept_bytes", "Stored uploads and reports: of all courses, of the largest course.", "of", &kept)?;
+        let values = [("all", queue.stored_bytes[0] as f64), ("largest course", queue.stored_bytes[1] as f64)];
+        self.gauge("kept_bytes", "Stored uploads and reports: of all courses, of the largest course.", "of", &values)?;
         self.write_counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
-        let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
+        let kinds = kinds.map(|kind| (kind.replace(' ', "_"), count_of(&queue.events, kind)));
         let kinds: Vec<(&str, f64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
         self.write_counter("events_total", "Results and errors of jobs.", "kind", &kinds)
     }

@@ -20,9 +20,9 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     match completion {
         Completion::Done => {
             let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
-            health::note_result(transaction, &about.worker).await?;
+            health::record_result(transaction, &about.worker).await?;
         }
-        Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
+        Completion::Late => log_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
         Completion::Repeated => {}
     }
     Ok(completion)
@@ -39,20 +39,20 @@ pub async fn fail(
     lease: &Lease,
     fault: &str,
 ) -> Result<Failure, DbError> {
-    let fault = &health::without_paths(fault);
+    let fault = &health::strip_paths(fault);
     let failure = queue::fail(transaction, policy, lease, fault, Duration::ZERO).await?;
     if failure == Failure::Late {
-        note_late(transaction, lease, "a failure").await?;
+        log_late(transaction, lease, "a failure").await?;
         return Ok(failure);
     }
     let row = find_job(transaction, lease.job).await?;
     if failure == Failure::Buried {
-        give_up(transaction, lease.job, lease.attempt, fault).await?;
+        fail_job(transaction, lease.job, lease.attempt, fault).await?;
     } else {
-        note(transaction, &row, "failed try", fault).await?;
+        log_event(transaction, &row, "failed try", fault).await?;
     }
     // The worker's row is locked last, as in `finish`, so that no deadlock is possible.
-    health::note_failure(transaction, &row.worker, fault).await?;
+    health::record_failure(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
@@ -79,8 +79,8 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     Ok(())
 }
 
-/// A job, and what is known about its submission.
-struct JobFacts {
+/// A job, with details of its submission.
+struct JobDetails {
     job: i64,
     submission: Option<i64>,
     campaign: Option<i64>,
@@ -93,7 +93,7 @@ struct JobFacts {
     seconds: i64,
 }
 
-async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
+async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobDetails, DbError> {
     let statement = "SELECT job.submission, job.campaign, job.payload, job.asked_by,
                 coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
@@ -104,13 +104,13 @@ async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, D
         WHERE job.id = ?";
     let row = &transaction.one(statement, values![job]).await?;
     let seconds = row.int("took")? / 1000;
-    Ok(read_row!(row => JobFacts {
+    Ok(read_row!(row => JobDetails {
         submission, campaign, assignment, course, worker, asked_by, task = "payload"; job, seconds
     }))
 }
 
 /// Writes an entry about a job into the audit log.
-async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text: &str) -> Result<(), DbError> {
+async fn log_event(transaction: &mut Transaction, about: &JobDetails, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
     transaction
@@ -121,29 +121,29 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
 
 /// Records and counts a message of a worker that came too late. The message has no other effect. If the job does not
 /// exist, the message is not counted.
-async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
+async fn log_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
     if known.is_some() {
         let row = find_job(transaction, lease.job).await?;
-        note(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
+        log_event(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
     }
     Ok(())
 }
 
 async fn bury_all(transaction: &mut Transaction, jobs: &[BuriedJob]) -> Result<(), DbError> {
     for job in jobs {
-        give_up(transaction, job.job, job.attempt, &job.fault).await?;
+        fail_job(transaction, job.job, job.attempt, &job.fault).await?;
     }
     Ok(())
 }
 
-async fn give_up(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
+async fn fail_job(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
     let row = write_result(transaction, job, attempt, &Outcome::judge_error()).await?;
-    if row.submission.is_none() && score::give_up(transaction, &row.task, fault).await? {
+    if row.submission.is_none() && score::record_failure(transaction, &row.task, fault).await? {
         return Ok(());
     }
-    note(transaction, &row, "buried", fault).await
+    log_event(transaction, &row, "buried", fault).await
 }
 
 /// Writes a result. It also becomes the grade, unless it belongs to a regrade on which staff have not decided.
@@ -152,7 +152,7 @@ async fn write_result(
     job: i64,
     attempt: i64,
     outcome: &Outcome,
-) -> Result<JobFacts, DbError> {
+) -> Result<JobDetails, DbError> {
     let about = find_job(transaction, job).await?;
     // Only grading jobs have a result.
     let Some(submission) = about.submission else { return Ok(about) };
@@ -211,8 +211,8 @@ async fn write_result(
         _ => outcome.verdict.clone(),
     };
     match about.campaign {
-        None => note(transaction, &about, "graded", &text).await?,
-        Some(_) => note(transaction, &about, "regraded", &format!("{text}, if the regrade is applied")).await?,
+        None => log_event(transaction, &about, "graded", &text).await?,
+        Some(_) => log_event(transaction, &about, "regraded", &format!("{text}, if the regrade is applied")).await?,
     }
     Ok(about)
 }
@@ -250,5 +250,5 @@ pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) 
     transaction
         .execute(statement, values![change.submission, old, change.result, change.by, change.campaign, change.reason])
         .await?;
-    score::note_change(transaction, change.submission).await
+    score::queue_changed_scores(transaction, change.submission).await
 }

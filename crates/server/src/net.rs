@@ -8,7 +8,7 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use ureq::Agent;
 
-/// The time that open connections have to finish after the server was told to stop.
+/// The time that open connections have to finish after the server was requested to stop.
 const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
 /// Serves connections until `stop` is canceled, and answers the requests that have arrived by then.
@@ -20,7 +20,7 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
     // Each connection may also need a file, so raise the limit of open files as far as the kernel allows.
     let maximum = getrlimit(Resource::Nofile).maximum;
     if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
-        tracing::debug!(%error, "the limit of open files stays");
+        tracing::debug!(%error, "cannot raise the limit of open files");
     }
     let service = router.into_make_service_with_connect_info::<SocketAddr>();
     let serving = axum::serve(listener, service).with_graceful_shutdown(stop.clone().cancelled_owned());
@@ -34,12 +34,12 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
 }
 
 /// Returns a client for requests to services that an administrator configured. It follows no redirections.
-pub(crate) fn new_agent(over_http: bool, patience: Duration) -> Agent {
+pub(crate) fn new_agent(over_http: bool, timeout: Duration) -> Agent {
     Agent::config_builder()
         .http_status_as_error(false)
         .max_redirects(0)
         .https_only(!over_http)
-        .timeout_global(Some(patience))
+        .timeout_global(Some(timeout))
         .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
         .build()
         .new_agent()

@@ -53,7 +53,7 @@ type Client =
 pub enum ProviderFault {
     /// The provider does not answer; a later request may succeed.
     #[error("{0}")]
-    Away(String),
+    Unavailable(String),
     /// The provider rejects the sign-in, or its answer is not trusted.
     #[error("{0}")]
     Rejected(String),
@@ -75,7 +75,7 @@ pub struct ProviderPerson {
 
 /// The secrets of one sign-in.
 #[derive(Debug, Clone)]
-pub struct SignInWords {
+pub struct SignInSecrets {
     /// The state, which the provider returns unchanged.
     pub state: String,
     /// The nonce, which the provider's token must contain.
@@ -85,7 +85,7 @@ pub struct SignInWords {
 }
 
 /// The facts that a provider reports about a person and that this service uses.
-struct SaidClaims {
+struct PersonClaims {
     name: Option<String>,
     nickname: Option<String>,
     email: Option<String>,
@@ -94,9 +94,9 @@ struct SaidClaims {
 
 /// Reads the claims from a token, or from the answer to a further request. The types of both have the same methods, but
 /// no common trait.
-macro_rules! said {
+macro_rules! read_claims {
     ($claims:ident) => {
-        SaidClaims {
+        PersonClaims {
             name: $claims.name().and_then(|name| name.get(None)).map(|name| name.to_string()),
             nickname: $claims.preferred_username().map(|name| name.to_string()),
             email: $claims.email().map(|email| email.to_string()),
@@ -168,11 +168,11 @@ impl Provider {
             return metadata.clone();
         }
         let http = |request| send(self.agent.clone(), request);
-        let asked = CoreProviderMetadata::discover_async(self.issuer.clone(), &http).await;
-        let metadata = asked.map_err(|error| {
+        let configuration = CoreProviderMetadata::discover_async(self.issuer.clone(), &http).await;
+        let metadata = configuration.map_err(|error| {
             let why = format!("{:#}", anyhow!(error));
             tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
-            ProviderFault::Away(format!("{} does not answer correctly", self.label))
+            ProviderFault::Unavailable(format!("{} does not answer correctly", self.label))
         });
         *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
         metadata
@@ -195,9 +195,9 @@ impl Provider {
     /// # Errors
     ///
     /// Fails if the provider does not answer.
-    pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
+    pub async fn address(&self, redirect: &str, secrets: SignInSecrets) -> Result<Url, ProviderFault> {
         let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
-        let SignInWords { state, nonce, verifier } = words;
+        let SignInSecrets { state, nonce, verifier } = secrets;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
         let flow = CoreAuthenticationFlow::AuthorizationCode;
         let (address, ..) = client
@@ -217,18 +217,18 @@ impl Provider {
         &self,
         redirect: &str,
         code: String,
-        words: SignInWords,
+        secrets: SignInSecrets,
     ) -> Result<ProviderPerson, ProviderFault> {
         let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
-        let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
-        let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
-        let answer = asked.map_err(|error| match error {
-            RequestTokenError::Request(_) => ProviderFault::Away(format!("{} does not answer", self.label)),
+        let request = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
+        let answer = request.set_pkce_verifier(PkceCodeVerifier::new(secrets.verifier)).request_async(&http).await;
+        let answer = answer.map_err(|error| match error {
+            RequestTokenError::Request(_) => ProviderFault::Unavailable(format!("{} does not answer", self.label)),
             error => untrusted_answer(error),
         })?;
         let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
-        let nonce = Nonce::new(words.nonce);
+        let nonce = Nonce::new(secrets.nonce);
         let claims = match verify_token(&client, token, &nonce) {
             // The provider may have changed its keys, so its configuration is read again.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
@@ -237,40 +237,41 @@ impl Provider {
             claims => claims,
         };
         let claims = claims.map_err(untrusted_answer)?;
-        let said = said!(claims);
+        let claims_in_token = read_claims!(claims);
         // Some providers put the mail address into the token. Others return it only for a further request.
-        let more = match said.email {
+        let further = match claims_in_token.email {
             Some(_) => None,
-            None => self.ask_for_claims(&client, answer.access_token().clone(), claims.subject().clone()).await?,
+            None => self.fetch_claims(&client, answer.access_token().clone(), claims.subject().clone()).await?,
         };
-        self.read(claims.subject().to_string(), more.unwrap_or(said))
+        self.read(claims.subject().to_string(), further.unwrap_or(claims_in_token))
     }
 
     /// Returns further claims about a person; `None` if the provider does not offer them.
-    async fn ask_for_claims(
+    async fn fetch_claims(
         &self,
         client: &Client,
         token: AccessToken,
         subject: SubjectIdentifier,
-    ) -> Result<Option<SaidClaims>, ProviderFault> {
-        let Ok(asked) = client.user_info(token, Some(subject)) else { return Ok(None) };
+    ) -> Result<Option<PersonClaims>, ProviderFault> {
+        let Ok(request) = client.user_info(token, Some(subject)) else { return Ok(None) };
         let http = |request| send(self.agent.clone(), request);
         let claims: UserInfoClaims<EmptyAdditionalClaims, CoreGenderClaim> =
-            asked.request_async(&http).await.map_err(untrusted_answer)?;
-        Ok(Some(said!(claims)))
+            request.request_async(&http).await.map_err(untrusted_answer)?;
+        Ok(Some(read_claims!(claims)))
     }
 
-    fn read(&self, subject: String, said: SaidClaims) -> Result<ProviderPerson, ProviderFault> {
+    fn read(&self, subject: String, claims: PersonClaims) -> Result<ProviderPerson, ProviderFault> {
         ensure((1..=255).contains(&subject.len()), untrusted_answer(anyhow!("sub must be 1 to 255 characters long")))?;
-        let email = said.email.map(|email| email.to_ascii_lowercase());
+        let email = claims.email.map(|email| email.to_ascii_lowercase());
         let parts = email.as_deref().and_then(|email| email.rsplit_once('@'));
-        let mailbox = parts.filter(|(_, domain)| said.is_confirmed && self.domain.as_deref() == Some(domain));
+        let mailbox = parts.filter(|(_, domain)| claims.is_confirmed && self.domain.as_deref() == Some(domain));
         let mailbox = mailbox.map(|(mailbox, _)| mailbox.to_owned());
         if let (Some(domain), None) = (&self.domain, &mailbox) {
             let detail = format!("only people whose address in {domain} is confirmed by {} may sign in", self.label);
             return Err(ProviderFault::Rejected(detail));
         }
-        Ok(ProviderPerson { subject, name: said.name, nickname: mailbox.clone().or(said.nickname).or(email), mailbox })
+        let PersonClaims { name, nickname, .. } = claims;
+        Ok(ProviderPerson { subject, name, nickname: mailbox.clone().or(nickname).or(email), mailbox })
     }
 }
 
@@ -291,10 +292,10 @@ fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
 
 /// Sends a request in a thread that may block.
 async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
-    let sent = tokio::task::spawn_blocking(move || {
+    let response = tokio::task::spawn_blocking(move || {
         let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();
         let body = body.with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(std::io::Error::other)?;
         Ok(HttpResponse::from_parts(head, body))
     });
-    sent.await?
+    response.await?
 }

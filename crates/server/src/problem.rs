@@ -7,7 +7,7 @@ use utoipa::ToSchema;
 /// The reason why a request was rejected, as the client receives it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Problem {
-    /// The name of the kind of problem, for programs. It never changes.
+    /// The identifier of the kind of problem. It never changes.
     #[serde(rename = "type")]
     pub kind: String,
     /// The kind of problem, in words.
@@ -23,8 +23,8 @@ pub struct Problem {
     pub wait: Option<u64>,
 }
 
-/// Declares the reasons for rejections. Each has a status, a name for programs, a title, a detail and a remedy. If the
-/// caller gives the detail or the remedy, it is an argument.
+/// Declares the reasons for rejections. Each has a status, an identifier, a title, a detail and a remedy. If the caller
+/// gives the detail or the remedy, it is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*):
         $status:literal, $kind:literal, $title:literal, $detail:expr, $remedy:expr;)*) => {
@@ -48,7 +48,7 @@ problems! {
     /// The request is not signed in.
     not_signed_in(): 401, "not-signed-in", "Not signed in",
         "this needs a sign-in",
-        "sign in, or send a token: Authorization: Bearer fso_...";
+        "sign in, or send a token: Bearer fso_...";
     /// The token, session or link is unknown or no longer valid.
     unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
         format!("this {what} is unknown, used, too old or revoked"),
@@ -148,7 +148,7 @@ problems! {
         "try again, and tell the administrator; the log has details";
 }
 
-/// Returns an error unless a condition holds.
+/// Checks a condition.
 ///
 /// # Errors
 /// Fails with `otherwise` if the condition does not hold.

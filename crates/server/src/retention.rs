@@ -36,27 +36,27 @@ pub struct RemovalCounts {
     pub artifacts: usize,
 }
 
-/// Removes the uploads and reports of submissions that are older than `keep`, if `keep` is set. Removes artifacts that
-/// are older than `least` and to which nothing refers. Submissions that are being graded or regraded are left alone.
+/// Removes the uploads and reports of submissions that are older than `keep_for`, if it is set. Removes artifacts that
+/// are older than `min_age` and to which nothing refers. Submissions that are being graded or regraded are left alone.
 ///
 /// # Errors
 ///
 /// Fails if the database or the store fails. The next call removes the rest.
-pub async fn give_up(
+pub async fn remove_expired(
     database: &Database,
     store: &Store,
-    keep: Option<Duration>,
-    least: Duration,
+    keep_for: Option<Duration>,
+    min_age: Duration,
 ) -> Result<RemovalCounts, RetentionError> {
-    let submissions = match keep {
-        Some(keep) => give_up_submissions(database, millis(keep)).await?,
+    let submissions = match keep_for {
+        Some(keep) => expire_submissions(database, millis(keep)).await?,
         None => 0,
     };
-    let artifacts = store.give_up(least, |digests| find_named(database, digests)).await?;
+    let artifacts = store.remove_unreferenced(min_age, |digests| find_referenced(database, digests)).await?;
     Ok(RemovalCounts { submissions, artifacts })
 }
 
-async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbError> {
+async fn expire_submissions(database: &Database, keep_for: i64) -> Result<u64, DbError> {
     let (mut after, mut id) = (i64::MIN, 0);
     let mut submissions = 0;
     loop {
@@ -65,7 +65,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
         let statement = "SELECT id, created_at FROM submission
             WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
             ORDER BY created_at, id LIMIT ?";
-        let found = transaction.rows(statement, values![keep, after, id, BATCH_SIZE]).await?;
+        let found = transaction.rows(statement, values![keep_for, after, id, BATCH_SIZE]).await?;
         drop(transaction);
         let Some(last) = found.last() else { break };
         (after, id) = (last.int("created_at")?, last.int("id")?);
@@ -96,10 +96,10 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
 }
 
 /// Returns those of the digests to which the database still refers.
-async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
+async fn find_referenced(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
     let suites = used_suites(&mut transaction).await?;
-    let wanted = serde_json::to_string(&digests).unwrap_or_default();
+    let digests_json = serde_json::to_string(&digests).unwrap_or_default();
     let statement = "SELECT wanted.value AS digest FROM {each}
         WHERE EXISTS (SELECT 1 FROM submission
                WHERE submission.digest = wanted.value AND submission.removed_at IS NULL)
@@ -113,13 +113,13 @@ async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet
                WHERE {strpos}(result.task, '\"archive\":\"') > 0
                    AND substr(result.task, {strpos}(result.task, '\"archive\":\"') + 11, 64) = wanted.value
                    AND submission.removed_at IS NULL)";
-    let rows = transaction.rows(statement, values![wanted]).await?;
-    let mut named: HashSet<Digest> =
+    let rows = transaction.rows(statement, values![digests_json]).await?;
+    let mut referenced: HashSet<Digest> =
         digests.iter().filter(|digest| suites.contains(digest.as_str())).cloned().collect();
     for row in &rows {
-        named.extend(row.text("digest")?.parse::<Digest>());
+        referenced.extend(row.text("digest")?.parse::<Digest>());
     }
-    Ok(named)
+    Ok(referenced)
 }
 
 /// Returns the digests of suite archives that settings or unfinished jobs name.
@@ -128,11 +128,11 @@ async fn used_suites(transaction: &mut Transaction) -> Result<HashSet<String>, D
         UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
            WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0";
     let texts = transaction.rows(statement, values![]).await?;
-    let mut named = HashSet::new();
+    let mut digests = HashSet::new();
     for row in &texts {
-        let words = row.text("words")?;
+        let text = row.text("words")?;
         let is_digest = |word: &&str| word.parse::<Digest>().is_ok();
-        named.extend(words.split(|c: char| !c.is_ascii_alphanumeric()).filter(is_digest).map(str::to_owned));
+        digests.extend(text.split(|c: char| !c.is_ascii_alphanumeric()).filter(is_digest).map(str::to_owned));
     }
-    Ok(named)
+    Ok(digests)
 }

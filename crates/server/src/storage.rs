@@ -1,8 +1,8 @@
 //! Checks whether the server can still write, and whether it has space for more.
 //!
 //! A database that answers reads may be unable to write, for example because the disk is full or a folder became
-//! read-only. Therefore [`Storage::prove`] writes to the database and to the store, and [`Storage::ensure_room`]
-//! rejects uploads before the disk is full, so that accepted ones can still be graded.
+//! read-only. Therefore [`Storage::check_writable`] writes to the database and to the store, and
+//! [`Storage::ensure_disk_space`] rejects uploads before the disk is full, so that accepted ones can still be graded.
 use crate::{
     db::{self, Database, DbError},
     problem::Problem,
@@ -46,18 +46,18 @@ impl Storage {
     /// # Errors
     ///
     /// Fails with status 503 if one of them can't be written. The message names it.
-    pub async fn prove(&self) -> Result<(), Problem> {
-        let proved = tokio::time::timeout(CHECK_TIMEOUT, self.prove_now()).await;
-        proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
+    pub async fn check_writable(&self) -> Result<(), Problem> {
+        let checked = tokio::time::timeout(CHECK_TIMEOUT, self.check_writable_now()).await;
+        checked.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
     }
 
-    async fn prove_now(&self) -> Result<(), Problem> {
+    async fn check_writable_now(&self) -> Result<(), Problem> {
         let mut last = self.last.lock().await;
         let known = last.filter(|(at, _)| at.elapsed() < CHECK_LIFETIME);
         let fault = match known {
             Some((_, fault)) => fault,
             None => {
-                let fault = self.fault().await;
+                let fault = self.find_fault().await;
                 *last = Some((Instant::now(), fault));
                 fault
             }
@@ -65,7 +65,7 @@ impl Storage {
         fault.map_or(Ok(()), |fault| Err(Problem::unavailable(fault)))
     }
 
-    async fn fault(&self) -> Option<&'static str> {
+    async fn find_fault(&self) -> Option<&'static str> {
         match db::read_version(&self.database).await {
             Ok(db::NEWEST) => {}
             Ok(_) => return Some("the tables are not those of this version"),
@@ -78,7 +78,7 @@ impl Storage {
             tracing::error!(%error, "the database can't be written");
             return Some("the database can't be written");
         }
-        if let Err(error) = self.store.prove().await {
+        if let Err(error) = self.store.check_writable().await {
             tracing::error!(%error, "the store of files can't be written");
             return Some("the store of files can't be written");
         }
@@ -103,7 +103,7 @@ impl Storage {
     /// # Errors
     ///
     /// Fails with status 507 if fewer bytes are free than the low-water mark requires.
-    pub fn ensure_room(&self) -> Result<(), Problem> {
+    pub fn ensure_disk_space(&self) -> Result<(), Problem> {
         // If a disk does not report its free space, uploads are accepted.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are rejected: the disk is nearly full");

@@ -4,7 +4,7 @@
 //!
 //! An artifact is safely stored before the database refers to it, so that a referenced artifact always exists.
 mod read;
-mod sweep;
+mod unreferenced;
 
 pub use read::OpenArtifact;
 
@@ -89,14 +89,14 @@ impl Digest {
         &self.0
     }
 
-    /// Returns the first digits of the digest, for people.
+    /// Returns the first digits of the digest, for display.
     pub fn short(&self) -> &str {
         &self.0[..12]
     }
 
     /// Returns the key of an artifact in one of the store's two folders.
-    fn key(&self, place: &str) -> Key {
-        Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
+    fn key(&self, folder: &str) -> Key {
+        Key::from(format!("{folder}/{}/{}", &self.0[..2], &self.0[2..]))
     }
 }
 
@@ -154,8 +154,8 @@ impl Store {
     ///
     /// Fails if the address is invalid, or this program was built without support for buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
-        let place = address.strip_prefix("s3://").unwrap_or_default();
-        let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
+        let location = address.strip_prefix("s3://").unwrap_or_default();
+        let (bucket, prefix) = location.split_once('/').unwrap_or((location, ""));
         if bucket.is_empty() {
             return Err(StoreError::Failed(format!("{address} must be s3://BUCKET/PREFIX")));
         }
@@ -181,7 +181,7 @@ impl Store {
     /// # Errors
     ///
     /// Fails if the store fails.
-    pub async fn prove(&self) -> Result<(), StoreError> {
+    pub async fn check_writable(&self) -> Result<(), StoreError> {
         let key = Key::from(format!("{TRASH_FOLDER}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
         self.objects.delete(&key).await?;

@@ -134,15 +134,15 @@ pub struct Outcome {
     pub seconds: String,
     /// The reports and logs; empty in lists of submissions.
     pub files: Vec<OutputFile>,
-    /// The part that students see while groups are withheld, in the form of [`ShownGrade`](crate::shown::ShownGrade);
-    /// `None` before it is computed.
+    /// The part that students see while groups are withheld, in the form of
+    /// [`VisibleGrade`](crate::visible_grade::VisibleGrade); `None` before it is computed.
     #[serde(skip)]
     pub shown: Option<String>,
     /// The scenes that are not accepted, one per line after the verdict's code; `None` before they are computed.
     #[serde(skip)]
     pub failed: Option<String>,
-    /// The points of groups and the likely mistakes, in the form of [`GradeParts`](crate::shown::GradeParts); `None`
-    /// before they are computed.
+    /// The points of groups and the likely mistakes, in the form of [`GradeParts`](crate::visible_grade::GradeParts);
+    /// `None` before they are computed.
     #[serde(skip)]
     pub parts: Option<String>,
 }
@@ -168,7 +168,7 @@ impl Outcome {
     }
 }
 
-/// Returns a number of points with at most two decimals, for people.
+/// Formats a number of points with at most two decimals.
 pub fn round_points(number: impl ToString) -> String {
     let number = number.to_string();
     let Ok(value) = number.parse::<f64>() else { return number };

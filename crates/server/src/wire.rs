@@ -20,7 +20,8 @@ pub struct ClaimedJob {
 
 /// A message that the worker is alive.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct SignOfLife {
+#[schema(as = SignOfLife)]
+pub(crate) struct WorkerReport {
     /// The maximum number of parallel gradings. It is 0 while the worker can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
@@ -35,7 +36,8 @@ pub(crate) struct SignOfLife {
 
 /// The server's settings for a worker: the interval of its reports, and the server's version.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub struct Manners {
+#[schema(as = Manners)]
+pub struct WorkerSettings {
     /// The time between two reports that the worker is alive, in milliseconds.
     pub(crate) tick_every: u64,
     /// The server's version.

@@ -1,4 +1,4 @@
-//! The harm of hostile clients to memory and connections, and how others fare meanwhile.
+//! Measures the memory and connections that hostile clients cost, and the latency of other clients at the same time.
 use super::{
     Bench,
     client::{Client, connect},
@@ -14,14 +14,14 @@ use std::{
 };
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 
-/// Connections that read slowly, what each asks for, and how much each reads in a second.
+/// The number of connections that read slowly.
 const READERS: usize = 40;
 const UPLOAD: usize = 120 << 20;
 const PACE: usize = 8 << 10;
 
 const HERE: IpAddr = IpAddr::V4(Ipv4Addr::LOCALHOST);
 
-/// Connections that ask for a large upload and read it slowly.
+/// Opens connections that request a large upload and read it slowly.
 pub(super) async fn slow_readers(arguments: &Bench) -> Result<String> {
     let mut stage = Stage::set(arguments, &[]).await?;
     let mut file = b"#!/bin/sh\n".to_vec();
@@ -66,7 +66,7 @@ pub(super) async fn slow_readers(arguments: &Bench) -> Result<String> {
     stage.finish().await
 }
 
-/// Says how others fared.
+/// Reports the latency of other clients.
 pub(super) async fn report(arguments: &Bench, stage: &mut Stage, what: &str) -> Result<()> {
     forget_peak(stage.process());
     let mut times = Times::default();
@@ -82,7 +82,7 @@ pub(super) async fn report(arguments: &Bench, stage: &mut Stage, what: &str) -> 
     Ok(())
 }
 
-/// Looks at health and a page, each time by a new connection, until then.
+/// Requests `/health` and a page by new connections until the given time.
 async fn others(stage: &mut Stage, until: Instant, times: &mut Times) {
     let cookie = stage.admin.cookie();
     while Instant::now() < until {

@@ -16,25 +16,25 @@ use std::{
 };
 use tokio::net::{TcpSocket, TcpStream};
 
-/// After so long without an answer a request counts as an error.
+/// The time without an answer after which a request counts as an error.
 const PATIENCE: Duration = Duration::from_secs(300);
 
-/// Somebody with a browser.
+/// A person with a browser.
 pub(super) struct Client {
     server: SocketAddr,
-    /// Students come from addresses of their own: all of 127.0.0.0/8 is this machine.
+    /// The student's own address. All addresses in 127.0.0.0/8 belong to this machine.
     address: IpAddr,
     connection: Option<SendRequest<Body>>,
     session: Option<String>,
 }
 
-/// The answer of the server.
+/// The server's answer.
 pub(super) struct Answer {
     pub(super) status: StatusCode,
     pub(super) body: Bytes,
 }
 
-/// A connection from this address of this machine.
+/// Connects to the server from this address of this machine.
 pub(super) async fn connect(server: SocketAddr, address: IpAddr) -> Result<TcpStream> {
     let socket = TcpSocket::new_v4()?;
     socket.bind((address, 0).into())?;
@@ -47,7 +47,7 @@ impl Client {
         Self { server, address: IpAddr::from([127, high, middle, low]), connection: None, session: None }
     }
 
-    /// Signs in by a link's secret.
+    /// Signs in with the secret of a link.
     pub(super) async fn welcome(&mut self, secret: &str) -> Result<()> {
         let answer = self.request(Method::POST, &format!("/welcome/{secret}"), Bytes::new()).await?;
         if answer.status != StatusCode::SEE_OTHER || self.session.is_none() {
@@ -56,12 +56,12 @@ impl Client {
         Ok(())
     }
 
-    /// The header that shows who this is.
+    /// Returns the cookie of the session.
     pub(super) fn cookie(&self) -> String {
         self.session.clone().unwrap_or_default()
     }
 
-    /// Goes on with another client's session.
+    /// Continues with another client's session.
     pub(super) fn take(&mut self, cookie: String) {
         self.session = Some(cookie);
     }
@@ -70,7 +70,7 @@ impl Client {
         self.request(Method::GET, path, Bytes::new()).await
     }
 
-    /// Reads an answer to its end, and forgets it; how many bytes there were.
+    /// Reads an answer to its end, and returns its number of bytes.
     pub(super) async fn pull(&mut self, path: &str) -> Result<usize> {
         let response = self.ask(Method::GET, path, Bytes::new()).await?.1;
         let mut pieces = Body::new(response.into_body()).into_data_stream();
@@ -81,7 +81,7 @@ impl Client {
         Ok(bytes)
     }
 
-    /// A request whose answer is read to its end.
+    /// Sends a request, and reads the answer to its end.
     pub(super) async fn request(&mut self, method: Method, path: &str, body: Bytes) -> Result<Answer> {
         tokio::time::timeout(PATIENCE, self.exchange(method, path, body)).await.context("no answer in five minutes")?
     }
@@ -94,7 +94,7 @@ impl Client {
         Ok(Answer { status, body })
     }
 
-    /// Sends a request, by a new connection where the old one is no more.
+    /// Sends a request, by a new connection if the old one is closed.
     async fn ask(
         &mut self,
         method: Method,

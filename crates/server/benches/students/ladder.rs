@@ -1,4 +1,4 @@
-//! The ladder of Artemis's load tests: more and more students who never stop to think, and a deadline at its end.
+//! Repeats the load tests of Artemis: an increasing number of students who never pause, and a deadline at the end.
 use super::{
     Bench,
     client::{Answer, Client},
@@ -13,16 +13,16 @@ use axum::{
 };
 use std::time::{Duration, Instant};
 
-/// Where students hand in.
+/// The path to which students submit.
 pub(super) const UPLOADS: &str = "/api/v1/courses/bench/assignments/m1/submissions?name=FOSSSim";
 
-/// How often a student looks whether there is a grade, as a page does that hears nothing.
+/// The time between two requests for a submission's state.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 
-/// The longest time that the queue may take to empty between two rungs.
+/// The maximum time for the queue to become empty between two rungs.
 const REST: Duration = Duration::from_secs(120);
 
-/// The steps of students, in this order, again and again.
+/// The steps that each student repeats, in this order.
 const STEPS: [&str; 6] = ["sign in", "course", "upload", "status", "verdict", "report"];
 
 pub(super) async fn climb(arguments: &Bench) -> Result<String> {
@@ -80,7 +80,7 @@ pub(super) async fn climb(arguments: &Bench) -> Result<String> {
     stage.finish().await
 }
 
-/// The upload.
+/// Returns the program that students upload.
 fn program(arguments: &Bench) -> Result<Bytes> {
     Ok(match &arguments.program {
         Some(file) => Bytes::from(std::fs::read(file)?),
@@ -88,7 +88,7 @@ fn program(arguments: &Bench) -> Result<Bytes> {
     })
 }
 
-/// Waits until the queue is empty: what one rung left behind is not the next one's.
+/// Waits until the queue is empty, so that the jobs of one rung do not delay the next one.
 async fn empty(stage: &mut Stage) -> Result<()> {
     let start = Instant::now();
     while start.elapsed() < REST {
@@ -117,7 +117,7 @@ impl LadderStudent {
         while Instant::now() < until {
             if let Err(error) = self.round(until, &program, &mut times).await {
                 times.failed("broken", error);
-                // Nobody hammers a server that is down.
+                // Do not send requests without a pause to a server that is down.
                 tokio::time::sleep(LOOK_EVERY).await;
             }
         }
@@ -132,7 +132,7 @@ impl LadderStudent {
             self.secret = None;
         }
         self.see("course", "/c/bench", times).await?;
-        // Each is another program, so that each is stored.
+        // Each program differs, so that each is stored.
         let own = format!("\n# {} {}\n", self.number, self.round);
         self.round += 1;
         let body = Bytes::from([program, own.as_bytes()].concat());
@@ -151,7 +151,7 @@ impl LadderStudent {
             if submission["state"] == "done" {
                 break;
             }
-            // A student without a grade by now does not wait for it: the queue is as long as the rung is high.
+            // A student who has no grade at the end of the rung does not wait for it.
             if Instant::now() > until {
                 return Ok(());
             }

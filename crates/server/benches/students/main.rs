@@ -1,5 +1,5 @@
-//! The number of students that the service bears, and what hostile clients cost it: a server of its own on this
-//! machine, in a folder that goes away again. Prints a table.
+//! Measures how many students the service can serve, and what hostile clients cost it. Starts a server on this machine
+//! in a temporary folder, and prints a table.
 //!
 //!     cargo bench -p fosssim-server -- ladder --students 50,100,200
 #![forbid(unsafe_code)]
@@ -16,51 +16,51 @@ use anyhow::Result;
 use clap::{Parser, ValueEnum};
 use std::{ffi::OsString, path::PathBuf};
 
-/// Measures a server of its own on this machine.
+/// Starts a server on this machine, and measures it.
 #[derive(Debug, Parser)]
 pub(crate) struct Bench {
-    /// The measurement.
+    /// The kind of measurement.
     #[arg(value_enum, default_value_t = Measurement::Ladder)]
     measurement: Measurement,
-    /// The rungs of the ladder: simulated students.
+    /// The number of simulated students on each rung of the ladder.
     #[arg(long, value_name = "N,N,...", value_delimiter = ',', default_value = "50,100,200,500,1000,2000")]
     students: Vec<usize>,
-    /// How long each rung is, and how long others are watched.
+    /// The duration of each rung, and of the measurements of other clients, in seconds.
     #[arg(long, value_name = "SECONDS", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=3600))]
     seconds: u64,
-    /// Submissions of `million`.
+    /// The number of submissions for `million`.
     #[arg(long, value_name = "N", default_value_t = 1_000_000, value_parser = clap::value_parser!(i64).range(1000..))]
     count: i64,
-    /// An empty database for it: postgres://USER:PASSWORD@HOST/NAME. A SQLite file by default.
+    /// An empty database: postgres://USER:PASSWORD@HOST/NAME. The default is a SQLite file.
     #[arg(long, value_name = "ADDRESS")]
     database: Option<String>,
-    /// The grader; by default a script that answers at once, so that the service is what is measured.
+    /// The grader. The default is a script that answers immediately, so that only the service is measured.
     #[arg(long, value_name = "PROGRAM")]
     grader: Option<PathBuf>,
-    /// The students' program; a script that does nothing by default.
+    /// The students' program. The default is a script that does nothing.
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// Gradings at one time.
+    /// The number of parallel gradings.
     #[arg(long, value_name = "N", default_value_t = 2)]
     workers: usize,
-    /// Cargo says this to every benchmark.
+    /// An option that Cargo passes to every benchmark.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-/// The measurements.
+/// The kinds of measurements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Measurement {
-    /// 50 to 2,000 students who sign in, look at the course, hand in, wait for the grade and read the report, without
-    /// a pause between. At the end all hand in within the last seconds before a deadline.
+    /// 50 to 2,000 students sign in, open the course, submit, wait for the grade and read the report, without pauses.
+    /// At the end, all submit within the last seconds before a deadline.
     Ladder,
-    /// 40 connections that read an upload of 120 MiB slowly.
+    /// 40 connections read an upload of 120 MiB slowly.
     SlowReaders,
-    /// A million submissions, exported and removed.
+    /// A million submissions are exported and removed.
     Million,
 }
 
-/// Runs the measurement that these words ask for, and prints its numbers; the same text is the answer.
+/// Runs the measurement that the arguments select. Prints the numbers, and returns them as text.
 pub(crate) fn run(words: impl IntoIterator<Item = OsString>) -> Result<String> {
     let bench = Bench::parse_from(words);
     tokio::runtime::Builder::new_multi_thread().enable_all().build()?.block_on(async {

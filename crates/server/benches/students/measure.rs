@@ -1,7 +1,7 @@
-//! The measurements: how long answers took, and what server and machine spent meanwhile (from `/proc`).
+//! Collects the durations of answers, and the resources that the server and the machine used (from `/proc`).
 use std::{collections::BTreeMap, fs, time::Duration};
 
-/// The time that each kind of request took, and how many failed.
+/// The durations of each kind of request, and the number of failures.
 #[derive(Default)]
 pub(super) struct Times {
     pub(super) by_step: BTreeMap<&'static str, Vec<Duration>>,
@@ -26,7 +26,7 @@ impl Times {
         }
     }
 
-    /// `p50 / p95 / p99` of a step, in milliseconds.
+    /// Returns `p50 / p95 / p99` of a step, in milliseconds.
     pub(super) fn percentiles(&mut self, step: &str) -> String {
         let Some(times) = self.by_step.get_mut(step).filter(|times| !times.is_empty()) else { return "-".to_owned() };
         times.sort_unstable();
@@ -35,7 +35,7 @@ impl Times {
     }
 }
 
-/// The time that processes and the machine have spent, in ticks of the clock.
+/// The processor time that processes and the machine have used, in clock ticks.
 #[derive(Clone, Copy)]
 pub(super) struct Spent {
     server: u64,
@@ -55,13 +55,13 @@ pub(super) struct TimeShares {
     pub(super) disk: u64,
 }
 
-/// Processor times of a process and of the children that it has waited for.
+/// Returns the processor times of a process, and of the children that it has waited for.
 fn read_process(name: &str) -> (u64, u64) {
     let text = fs::read_to_string(format!("/proc/{name}/stat")).unwrap_or_default();
     let fields: Vec<u64> =
         text.rsplit(')').next().unwrap_or_default().split(' ').map(|field| field.parse().unwrap_or(0)).collect();
     let at = |index: usize| fields.get(index).copied().unwrap_or(0);
-    // Fields 14 to 17, of which the text behind the name begins with a space and the third.
+    // Fields 14 to 17. The text after the name begins with a space and field 3.
     (at(12) + at(13), at(14) + at(15))
 }
 
@@ -94,7 +94,7 @@ impl Spent {
 }
 
 impl TimeShares {
-    /// The bottleneck that kept it from doing more.
+    /// Returns the bottleneck that limited the throughput.
     pub(super) fn bound(&self) -> String {
         let busy = self.server + self.graders + self.clients + self.others;
         let who = format!(
@@ -109,21 +109,21 @@ impl TimeShares {
     }
 }
 
-/// The most memory that a process had since [`forget_peak`], in MiB.
+/// Returns the peak memory of a process since [`forget_peak`], in MiB.
 pub(super) fn peak(process: u32) -> u64 {
     let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).unwrap_or_default();
     line.trim().trim_end_matches(" kB").parse::<u64>().unwrap_or(0).div_ceil(1024)
 }
 
-/// Has the kernel measure the most memory of a process from now on.
+/// Resets the kernel's record of a process's peak memory.
 pub(super) fn forget_peak(process: u32) {
     if let Err(error) = fs::write(format!("/proc/{process}/clear_refs"), "5") {
         eprintln!("the peak of memory counts from the start: {error}");
     }
 }
 
-/// The machine's load, for the record.
+/// Returns the machine's load average.
 pub(super) fn load() -> String {
     fs::read_to_string("/proc/loadavg").unwrap_or_default().split(' ').next().unwrap_or_default().to_owned()
 }

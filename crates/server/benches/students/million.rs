@@ -1,4 +1,4 @@
-//! A million submissions: what retention, exports and the pages beside them need.
+//! Measures retention, exports and pages with a million submissions.
 use super::{
     Bench,
     attack::report,
@@ -12,10 +12,10 @@ use fosssim_server::{
 };
 use std::time::Instant;
 
-/// Accounts; each has handed in as often as it takes.
+/// The number of accounts, among which the submissions are divided.
 const STUDENTS: i64 = 1000;
 
-/// Ten days, in milliseconds.
+/// The age of the submissions: ten days, in milliseconds.
 const AGE: i64 = 10 * 24 * 3600 * 1000;
 
 pub(super) async fn run(arguments: &Bench) -> Result<String> {
@@ -42,7 +42,7 @@ pub(super) async fn run(arguments: &Bench) -> Result<String> {
         start.elapsed().as_secs(),
         peak(stage.process())
     ));
-    // Retention begins with the server.
+    // Retention begins when the server starts.
     stage.again(arguments, &["--keep-days", "1", "--keep-of-course", "0"]).await?;
     let start = Instant::now();
     let mut left = arguments.count;

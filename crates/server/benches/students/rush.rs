@@ -1,4 +1,4 @@
-//! A deadline: all students hand in within the last seconds before it.
+//! Simulates a deadline: all students submit within the last seconds before it.
 use super::{
     Bench,
     client::Client,
@@ -13,25 +13,25 @@ use axum::{
 };
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// The time before the deadline in which all hand in.
+/// The time before the deadline in which all students submit.
 const RUSH: Duration = Duration::from_secs(5);
 
-/// The time in which all get ready.
+/// The time for preparations before that.
 const BEFORE: Duration = Duration::from_secs(3);
 
-/// Milliseconds since 1970.
+/// Returns the present time in milliseconds since 1970.
 fn now() -> Result<u64> {
     Ok(SystemTime::now().duration_since(UNIX_EPOCH)?.as_millis().try_into()?)
 }
 
-/// An upload in a hurry, and its answer.
+/// An upload shortly before the deadline, and its answer.
 struct RushUpload {
     begun: u64,
     status: StatusCode,
     submission: serde_json::Value,
 }
 
-/// Hands in once, at this moment.
+/// Submits once, at the given time.
 async fn hand_in(mut client: Client, number: usize, program: Bytes, moment: u64) -> Result<RushUpload> {
     let body = Bytes::from([&program, format!("\n# {number} in a hurry\n").as_bytes()].concat());
     tokio::time::sleep(Duration::from_millis(moment.saturating_sub(now()?))).await;
@@ -40,8 +40,8 @@ async fn hand_in(mut client: Client, number: usize, program: Bytes, moment: u64)
     Ok(RushUpload { begun, status: answer.status, submission: serde_json::from_slice(&answer.body)? })
 }
 
-/// Sets a due date, has everybody hand in shortly before it, and says how many of those who began in time were refused,
-/// or are late.
+/// Sets a due date, and lets all students submit shortly before it. Reports how many uploads that began in time were
+/// rejected or count as late.
 pub(super) async fn rush(
     arguments: &Bench,
     stage: &mut Stage,

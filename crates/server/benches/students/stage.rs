@@ -1,4 +1,4 @@
-//! The server that is measured, as a process of its own in a folder of its own, with a course.
+//! The measured server, as a separate process with its own folder and a course.
 use super::{Bench, client::Client};
 use anyhow::{Context, Result, bail};
 use axum::{body::Bytes, http::Method};
@@ -8,7 +8,7 @@ use tokio::{
     process::{Child, ChildStdout, Command},
 };
 
-/// Answers at once, so that the service is what is measured.
+/// A grader that answers immediately, so that only the service is measured.
 const GRADER: &str = r#"#!/bin/sh
 [ "$1" = grade ] || exit 2
 for word in "$@"; do
@@ -28,12 +28,12 @@ pub(super) struct Stage {
     pub(super) address: SocketAddr,
     pub(super) admin: Client,
     pub(super) folder: tempfile::TempDir,
-    /// All lines that were printed.
+    /// All lines that were printed so far.
     said: String,
 }
 
 impl Stage {
-    /// Starts a server, and makes a course in it.
+    /// Starts a server, and creates a course.
     pub(super) async fn set(arguments: &Bench, options: &[&str]) -> Result<Self> {
         let folder = tempfile::tempdir()?;
         let (server, output, address) = start(arguments, folder.path(), options).await?;
@@ -48,7 +48,7 @@ impl Stage {
         Ok(stage)
     }
 
-    /// Starts the server anew on what is there, with other options.
+    /// Restarts the server on the same data, with other options.
     pub(super) async fn again(&mut self, arguments: &Bench, options: &[&str]) -> Result<()> {
         self.stop().await?;
         let folder = self.folder.path().to_owned();
@@ -59,7 +59,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Has the administrator do something.
+    /// Sends a request as administrator, which must succeed.
     pub(super) async fn done(&mut self, method: Method, path: &str, body: &str) -> Result<Bytes> {
         let answer = self.admin.request(method, path, Bytes::copy_from_slice(body.as_bytes())).await?;
         if !answer.status.is_success() {
@@ -68,7 +68,7 @@ impl Stage {
         Ok(answer.body)
     }
 
-    /// The secret of a new student's link.
+    /// Creates a student, and returns the secret of the sign-in link.
     pub(super) async fn enrol(&mut self, number: usize) -> Result<String> {
         let wish = format!(r#"{{"name": "Student {number}", "role": "student"}}"#);
         let made = self.done(Method::PUT, &format!("/api/v1/courses/bench/members/s{number}"), &wish).await?;
@@ -77,7 +77,7 @@ impl Stage {
         Ok(link.rsplit('/').next().unwrap_or_default().to_owned())
     }
 
-    /// A student who is signed in.
+    /// Creates a student, and signs them in.
     pub(super) async fn student(&mut self, number: usize) -> Result<Client> {
         let secret = self.enrol(number).await?;
         let mut client = Client::new(self.address, number);
@@ -85,7 +85,7 @@ impl Stage {
         Ok(client)
     }
 
-    /// The server's process.
+    /// Returns the number of the server's process.
     pub(super) fn process(&self) -> u32 {
         self.server.id().unwrap_or_default()
     }
@@ -97,7 +97,7 @@ impl Stage {
         self.said.push('\n');
     }
 
-    /// Stops the server; all that was said.
+    /// Stops the server, and returns all printed lines.
     pub(super) async fn finish(mut self) -> Result<String> {
         self.stop().await?;
         Ok(self.said)

@@ -17,7 +17,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum LogFormat {
-    /// Print lines of text for people.
+    /// Print readable lines of text.
     Text,
     /// Print one JSON object per line.
     Json,
@@ -32,7 +32,7 @@ pub(super) enum Command {
     Backup(BackupArguments),
     Restore(RestoreArguments),
     Health(HealthArguments),
-    LookThrough(LookThroughArguments),
+    LookThrough(ArchiveCheckArguments),
     /// Prints the description of the API (OpenAPI).
     Openapi,
     /// Prints the manual page of the program, or of a command.
@@ -70,7 +70,7 @@ pub(super) struct WorkloadArguments {
     /// The grader; by default the program fosssim-oracle in this program's folder.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) grader: Option<PathBuf>,
-    /// The number of seconds without a sign of life after which a worker's jobs are given to other workers.
+    /// The number of seconds without a report from a worker after which its jobs are given to other workers.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) lease: u64,
     /// The number of failures after which a job is given up.
@@ -82,14 +82,14 @@ pub(super) struct WorkloadArguments {
 #[derive(Debug, Args)]
 pub(super) struct ServiceArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     /// The address on which the server listens. By default only this machine can reach it. For other machines, put a
     /// proxy with HTTPS in front.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
     /// The public address of the server, such as https://grades.example.org. With https, cookies are sent only over
     /// HTTPS.
-    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
+    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = parse_public_url)]
     pub(super) public_url: Option<String>,
     /// The number of parallel gradings in this process; with 0, only other workers grade. The default is one per core.
     #[arg(long, value_name = "N", env = "FOSSSIM_WORKERS")]
@@ -116,13 +116,14 @@ pub(super) struct ServiceArguments {
     /// The limit in MiB for all uploads and reports; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
     pub(super) keep_in_all: u64,
-    /// The minimum free space on the data folder's disk, in MiB. Below it uploads are rejected, so that accepted ones
-    /// can be graded.
+    /// The minimum free space on the data folder's disk, in MiB. Below it, uploads are rejected, so that accepted
+    /// uploads can still be graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
     #[command(flatten)]
     pub(super) provider: ProviderArguments,
-    /// The number of days for which uploads and reports are kept; 0 for no limit. Grades and their history always stay.
+    /// The number of days for which uploads and reports are kept; 0 for no limit. Grades and their history are always
+    /// kept.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
     /// Allows learning platforms without HTTPS, for tests on one machine.
@@ -159,9 +160,9 @@ pub(super) struct ProviderArguments {
 }
 
 /// Returns the scheme and host of an address that an administrator typed.
-fn public_url(text: &str) -> Result<String, String> {
-    let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
-    let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
+fn parse_public_url(text: &str) -> Result<String, String> {
+    let authority = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
+    let host = authority.map(|place| place.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
         return Err("an address must be https://HOST or http://HOST:PORT without a path".to_owned());
     }
@@ -172,12 +173,12 @@ fn public_url(text: &str) -> Result<String, String> {
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
     /// The server's public address. The default is the address with which the server was last started.
-    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
+    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = parse_public_url)]
     pub(super) public_url: Option<String>,
 }
 
@@ -185,7 +186,7 @@ pub(super) struct AdminLinkArguments {
 #[derive(Debug, Args)]
 pub(super) struct WorkerTokenArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     /// The name of the worker's machine.
     #[arg(default_value = "this-machine")]
     pub(super) name: String,
@@ -196,28 +197,28 @@ pub(super) struct WorkerTokenArguments {
 #[derive(Debug, Args)]
 pub(super) struct BackupArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     /// The new folder for the backup.
     #[arg(value_name = "FOLDER")]
     pub(super) output: PathBuf,
 }
 
-/// Creates a data folder from a backup. The data folder must be empty. A PostgreSQL database must be empty, too.
+/// Creates a data folder from a backup. The data folder must be empty, and so must a PostgreSQL database.
 #[derive(Debug, Args)]
 pub(super) struct RestoreArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     /// A folder that `backup` created.
     #[arg(value_name = "FOLDER")]
     pub(super) backup: PathBuf,
 }
 
-/// Checks whether a server or a worker is healthy, and reports it by the exit code, for probes. A server is given by
-/// its address, and a worker by its data folder.
+/// Checks whether a server or a worker is healthy, and reports the result by the exit code, for probes. A server is
+/// given by its address, and a worker by its data folder.
 #[derive(Debug, Args)]
 pub(super) struct HealthArguments {
     /// The server's address.
-    #[arg(long, value_name = "URL", value_parser = public_url)]
+    #[arg(long, value_name = "URL", value_parser = parse_public_url)]
     pub(super) server: Option<String>,
     /// The worker's data folder.
     #[arg(long, value_name = "DIR", default_value = "fosssim-data")]
@@ -227,7 +228,7 @@ pub(super) struct HealthArguments {
 /// Checks an upload; the server runs this command for each archive.
 #[derive(Debug, Args)]
 #[command(hide = true)]
-pub(super) struct LookThroughArguments {
+pub(super) struct ArchiveCheckArguments {
     #[arg(long)]
     pub(super) form: Option<String>,
     #[arg(long, default_value = "")]
@@ -243,14 +244,14 @@ pub(super) struct LookThroughArguments {
 #[derive(Debug, Args)]
 pub(super) struct WorkerArguments {
     #[command(flatten)]
-    pub(super) place: StorageArguments,
+    pub(super) storage: StorageArguments,
     #[command(flatten)]
     pub(super) work: WorkloadArguments,
     /// The number of parallel gradings. The default is one per core.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
     /// The address of a server on another machine for which this worker grades. The worker then needs no database.
-    #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = public_url)]
+    #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = parse_public_url)]
     pub(super) server: Option<String>,
     /// The file with the worker's token, which an administrator creates on the page "Administration".
     #[arg(long, value_name = "FILE")]

@@ -22,33 +22,33 @@ pub(super) struct ServiceFolders {
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
     pub(super) backups: PathBuf,
-    /// The file with a flawed program, for people who try the service.
+    /// The file with the example's flawed program.
     pub(super) flawed_program: PathBuf,
 }
 
 impl ServiceFolders {
     /// Finds the data folder of an earlier server, without creating one.
-    pub(super) fn find(place: &StorageArguments) -> Result<Self> {
-        if !place.data.exists() {
-            return Err(missing_error("data folder", &place.data));
+    pub(super) fn find(storage: &StorageArguments) -> Result<Self> {
+        if !storage.data.exists() {
+            return Err(missing_error("data folder", &storage.data));
         }
-        Self::find_database(place)
+        Self::find_database(storage)
     }
 
     /// Finds the folder of the database, for commands that need nothing else from it.
-    pub(super) fn find_database(place: &StorageArguments) -> Result<Self> {
-        if place.database.is_none() && !place.data.exists() {
-            return Err(missing_error("data folder", &place.data));
+    pub(super) fn find_database(storage: &StorageArguments) -> Result<Self> {
+        if storage.database.is_none() && !storage.data.exists() {
+            return Err(missing_error("data folder", &storage.data));
         }
-        match database(place, &place.data) {
+        match database_address_in(storage, &storage.data) {
             Address::Sqlite(file) if !file.is_file() => Err(missing_error("database", &file)),
-            _ => Self::open(place),
+            _ => Self::open(storage),
         }
     }
 
     /// Creates the data folder, or checks that only the server can access it.
-    pub(super) fn open(place: &StorageArguments) -> Result<Self> {
-        let data = std::path::absolute(&place.data)?;
+    pub(super) fn open(storage: &StorageArguments) -> Result<Self> {
+        let data = std::path::absolute(&storage.data)?;
         let data = data.as_path();
         if !data.exists() {
             fs::DirBuilder::new()
@@ -65,7 +65,7 @@ impl ServiceFolders {
             .with_context(|| format!("cannot write in {}; choose the server's folder with --data", data.display()))?;
         let mode = metadata.permissions().mode();
         if mode & 0o077 != 0 {
-            tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
+            tracing::warn!(folder = %data.display(), "other users can read the data folder; run chmod 700 on it");
         }
         Ok(Self {
             incoming: data.join("incoming"),
@@ -76,8 +76,8 @@ impl ServiceFolders {
     }
 
     /// Opens the store that the options name, or the one in the data folder.
-    pub(super) fn store(&self, place: &StorageArguments) -> Result<Store> {
-        match &place.store {
+    pub(super) fn store(&self, storage: &StorageArguments) -> Result<Store> {
+        match &storage.store {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
             None => Ok(Store::folder(&self.data.join("store"))?),
         }
@@ -88,8 +88,8 @@ impl ServiceFolders {
         for folder in [self.incoming.clone(), self.data.join("work")] {
             fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
             for entry in fs::read_dir(&folder)?.flatten() {
-                let written = entry.metadata().and_then(|data| data.modified());
-                if written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > LEFTOVER_AGE)) {
+                let modified = entry.metadata().and_then(|data| data.modified());
+                if modified.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > LEFTOVER_AGE)) {
                     drop(fs::remove_file(entry.path()).or_else(|_| fs::remove_dir_all(entry.path())));
                 }
             }
@@ -102,20 +102,20 @@ impl ServiceFolders {
     }
 
     /// Opens the database that the options name, or the one in the data folder.
-    pub(super) async fn open_database(&self, place: &StorageArguments) -> Result<(Database, Address)> {
-        let address = self.database(place);
+    pub(super) async fn open_database(&self, storage: &StorageArguments) -> Result<(Database, Address)> {
+        let address = self.database_address(storage);
         let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
         Ok((database, address))
     }
 
     /// Returns the address of the database that the options name, or the one in the data folder.
-    pub(super) fn database(&self, place: &StorageArguments) -> Address {
-        database(place, &self.data)
+    pub(super) fn database_address(&self, storage: &StorageArguments) -> Address {
+        database_address_in(storage, &self.data)
     }
 }
 
-fn database(place: &StorageArguments, data: &Path) -> Address {
-    place.database.clone().unwrap_or_else(|| Address::Sqlite(data.join("fosssim.db")))
+fn database_address_in(storage: &StorageArguments, data: &Path) -> Address {
+    storage.database.clone().unwrap_or_else(|| Address::Sqlite(data.join("fosssim.db")))
 }
 
 fn missing_error(what: &str, path: &Path) -> Error {

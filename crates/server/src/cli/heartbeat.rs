@@ -10,7 +10,7 @@ use std::{
 /// The name of the heartbeat file in the data folder.
 const HEARTBEAT_FILE: &str = "alive";
 
-/// The time between two heartbeats, unless the watchdog requires a shorter one.
+/// The maximum time between two heartbeats. A watchdog may require a shorter one.
 const BEAT_INTERVAL: Duration = Duration::from_secs(10);
 
 /// The maximum duration of a health check of the process.
@@ -20,12 +20,12 @@ const CHECK_TIMEOUT: Duration = Duration::from_secs(10);
 const MAX_SILENCE: Duration = Duration::from_secs(60);
 
 /// Reports to systemd that the process is ready.
-pub(super) fn say_ready() {
+pub(super) fn notify_ready() {
     notify_systemd(&[NotifyState::Ready]);
 }
 
 /// Reports to systemd that the process is about to end.
-pub(super) fn say_stopping() {
+pub(super) fn notify_stopping() {
     notify_systemd(&[NotifyState::Stopping]);
 }
 
@@ -38,7 +38,7 @@ fn notify_systemd(state: &[NotifyState<'_>]) {
 /// Sends a heartbeat whenever a health check succeeds, forever.
 pub(super) async fn send_heartbeats(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     let watchdog = sd_notify::watchdog_enabled();
-    let every = watchdog.map_or(BEAT_INTERVAL, |watchdog| (watchdog / 3).min(BEAT_INTERVAL));
+    let interval = watchdog.map_or(BEAT_INTERVAL, |watchdog| (watchdog / 3).min(BEAT_INTERVAL));
     loop {
         match tokio::time::timeout(CHECK_TIMEOUT, is_well()).await {
             Ok(true) => {
@@ -50,12 +50,12 @@ pub(super) async fn send_heartbeats(data: PathBuf, is_well: impl AsyncFn() -> bo
             }
             _ => tracing::warn!("no heartbeat is sent, because the database does not answer"),
         }
-        tokio::time::sleep(every).await;
+        tokio::time::sleep(interval).await;
     }
 }
 
 /// Returns whether a process with this data folder has sent a heartbeat recently.
 pub(super) fn is_alive(data: &Path) -> bool {
-    let touched = fs::metadata(data.join(HEARTBEAT_FILE)).and_then(|data| data.modified());
-    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < MAX_SILENCE))
+    let modified = fs::metadata(data.join(HEARTBEAT_FILE)).and_then(|data| data.modified());
+    modified.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < MAX_SILENCE))
 }

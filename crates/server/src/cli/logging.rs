@@ -4,7 +4,7 @@ use super::arguments::LogFormat;
 use tracing_subscriber::{Layer, filter::LevelFilter, fmt, layer::SubscriberExt, util::SubscriberInitExt};
 
 /// Starts the log in the given format.
-pub(super) fn begin(format: LogFormat) {
+pub(super) fn start_log(format: LogFormat) {
     let level = match std::env::var("FOSSSIM_LOG").as_deref() {
         Ok("debug") => LevelFilter::DEBUG,
         Ok("warn") => LevelFilter::WARN,

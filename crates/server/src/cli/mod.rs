@@ -1,12 +1,12 @@
 //! The command line of the service.
 
+mod archive_check;
 mod arguments;
 mod backup;
 mod folders;
 mod health;
 mod heartbeat;
 mod logging;
-mod look;
 mod serve;
 mod worker;
 
@@ -30,13 +30,13 @@ pub fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<u8> {
     // This command uses neither threads nor a log: its memory is limited, and its output is only the answer.
     if let Command::LookThrough(arguments) = &arguments.command {
-        return look::run(arguments).map(|()| 0);
+        return archive_check::run(arguments).map(|()| 0);
     }
-    logging::begin(arguments.log_format);
+    logging::start_log(arguments.log_format);
     let runtime = tokio::runtime::Builder::new_multi_thread().enable_all().build()?;
     runtime.block_on(async {
         match &arguments.command {
-            Command::Serve(arguments) => serve::run(arguments).await?,
+            Command::Serve(arguments) => serve::serve(arguments).await?,
             Command::Worker(arguments) => worker::run(arguments).await?,
             Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
             Command::WorkerToken(arguments) => serve::worker_token(arguments).await?,
@@ -48,8 +48,8 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Man { command } => {
                 let mut all = Arguments::command();
                 all.build();
-                let wanted = command.as_ref().and_then(|name| all.find_subcommand(name)).unwrap_or(&all).clone();
-                clap_mangen::Man::new(wanted).render(&mut std::io::stdout())?;
+                let shown = command.as_ref().and_then(|name| all.find_subcommand(name)).unwrap_or(&all).clone();
+                clap_mangen::Man::new(shown).render(&mut std::io::stdout())?;
             }
             Command::Completions { shell } => {
                 clap_complete::generate(*shell, &mut Arguments::command(), "fosssim-server", &mut std::io::stdout());
@@ -60,7 +60,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
 }
 
 /// Returns a token that the first SIGINT or SIGTERM cancels. The second signal ends the process immediately.
-fn until_signalled() -> Result<CancellationToken> {
+fn cancel_on_signal() -> Result<CancellationToken> {
     use tokio::signal::unix::{SignalKind, signal};
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);
     let stop = CancellationToken::new();
@@ -74,7 +74,7 @@ fn until_signalled() -> Result<CancellationToken> {
             if again {
                 std::process::exit(130);
             }
-            heartbeat::say_stopping();
+            heartbeat::notify_stopping();
             tracing::info!("stopping; jobs are returned to the queue (press again to stop immediately)");
             cancelled.cancel();
         }

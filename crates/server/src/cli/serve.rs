@@ -1,8 +1,9 @@
 //! The command `serve`: the server, with its own workers.
 use super::{
     arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments, StorageArguments, WorkerTokenArguments},
+    cancel_on_signal,
     folders::ServiceFolders,
-    heartbeat, until_signalled,
+    heartbeat,
     worker::{LocalWorkers, find_grader, queue_policy},
 };
 use crate::{
@@ -42,16 +43,16 @@ const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 /// The time between two searches for expired data.
 const CLEANUP_INTERVAL: Duration = Duration::from_secs(DAY_SECONDS / 4);
 
-pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
-    let stop = until_signalled()?;
+pub(super) async fn serve(arguments: &ServiceArguments) -> Result<()> {
+    let stop = cancel_on_signal()?;
     // Listen before anything else, so that a server that can't listen changes nothing.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
         format!("cannot listen on {}; choose another address with --listen ADDRESS:PORT", arguments.listen)
     })?;
-    let folders = ServiceFolders::open(&arguments.place)?;
-    let (database, address) = folders.open_database(&arguments.place).await?;
+    let folders = ServiceFolders::open(&arguments.storage)?;
+    let (database, address) = folders.open_database(&arguments.storage).await?;
     update_tables(&database, &folders, &address).await?;
-    let store = folders.store(&arguments.place)?;
+    let store = folders.store(&arguments.storage)?;
     folders.clear()?;
     let notifier = Notifier::default();
     let local = format!("http://{}", listener.local_addr()?);
@@ -59,7 +60,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     std::fs::write(folders.data.join(ADDRESS_FILE), &public)?;
     let policy = queue_policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
-    let provider = provider(&arguments.provider)?;
+    let provider = read_provider(&arguments.provider)?;
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
     let options = Options {
         suites: read_suites(arguments.work.grader.as_deref()).await,
@@ -81,14 +82,14 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
         lti: lti.clone(),
     };
     let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);
-    let looking = database.clone();
-    let look = move || {
-        let database = looking.clone();
+    let tick_database = database.clone();
+    let tick = move || {
+        let database = tick_database.clone();
         async move { ledger::tick(&database, &policy).await }
     };
-    tokio::spawn(lti::send_scores(database.clone(), notifier.clone(), policy, lti, look, stop.clone()));
-    let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY_SECONDS));
-    tokio::spawn(clean_up(database.clone(), store.clone(), keep));
+    tokio::spawn(lti::send_scores(database.clone(), notifier.clone(), policy, lti, tick, stop.clone()));
+    let keep_for = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY_SECONDS));
+    tokio::spawn(clean_up(database.clone(), store.clone(), keep_for));
     let slots = match arguments.workers {
         Some(workers) => NonZeroUsize::new(workers),
         None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
@@ -102,9 +103,9 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     });
     let example = arguments.example.then_some(folders.flawed_program.as_path());
     print_greeting(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
-    heartbeat::say_ready();
-    let seen = database.clone();
-    tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async move || seen.is_healthy().await));
+    heartbeat::notify_ready();
+    let monitored = database.clone();
+    tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async move || monitored.is_healthy().await));
     let serving = net::serve(listener, web::router(app), stop.clone());
     match working {
         None => serving.await?,
@@ -120,7 +121,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
 
 /// Returns the provider at which people sign in. The provider's secret is not a command-line option, because lists of
 /// processes show options.
-fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
+fn read_provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     let ProviderArguments { oidc_issuer, oidc_client, oidc_secret_file, oidc_label, oidc_domain } = arguments;
     let (Some(issuer), Some(client)) = (oidc_issuer, oidc_client) else { return Ok(None) };
     let secret = match oidc_secret_file {
@@ -131,9 +132,8 @@ fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     Ok(Some(Provider::new(issuer.clone(), client, secret, oidc_label.clone(), oidc_domain.clone())?))
 }
 
-/// Prints the server's address and a way to sign in to standard output, for people and scripts. The log is on standard
-/// error and contains no secrets. If the server has the example course, this also prints the path of the flawed
-/// program.
+/// Prints the server's address and a link to sign in to standard output. The log, on standard error, contains no
+/// secrets. If the server has the example course, this also prints the path of the flawed program.
 async fn print_greeting(
     app: &App,
     [local, public]: [&str; 2],
@@ -152,8 +152,8 @@ async fn print_greeting(
             writeln!(output, "Sign in once as a student at {public}/welcome/{}", link.reveal())?;
         }
         if !program.exists() {
-            let place = program.to_str().context("the data folder's name is not UTF-8")?;
-            run_grader(grader, &["demo", "--program", place])
+            let path = program.to_str().context("the data folder's name is not UTF-8")?;
+            run_grader(grader, &["demo", "--program", path])
                 .await
                 .context("the example program could not be written")?;
         }
@@ -163,9 +163,9 @@ async fn print_greeting(
 }
 
 /// Deletes expired artifacts, and files that killed servers left behind, at regular intervals.
-async fn clean_up(database: Database, store: Store, keep: Option<Duration>) {
+async fn clean_up(database: Database, store: Store, keep_for: Option<Duration>) {
     loop {
-        match retention::give_up(&database, &store, keep, retention::MIN_AGE).await {
+        match retention::remove_expired(&database, &store, keep_for, retention::MIN_AGE).await {
             Ok(found) if found == retention::RemovalCounts::default() => {}
             Ok(found) => tracing::info!(found.submissions, found.artifacts, "old uploads and reports were removed"),
             Err(error) => tracing::warn!(%error, "old uploads and reports could not be removed"),
@@ -175,32 +175,33 @@ async fn clean_up(database: Database, store: Store, keep: Option<Duration>) {
 }
 
 /// Reads the names of the grader's suites. A server whose workers are elsewhere may have no grader.
-async fn read_suites(named: Option<&Path>) -> Suites {
-    let asked = async { Ok(Suites::read(&run_grader(named, &["suite", "list", "--format", "json"]).await?)?) };
-    asked.await.unwrap_or_else(|error: anyhow::Error| {
+async fn read_suites(grader: Option<&Path>) -> Suites {
+    let suites = async { Ok(Suites::read(&run_grader(grader, &["suite", "list", "--format", "json"]).await?)?) };
+    suites.await.unwrap_or_else(|error: anyhow::Error| {
         tracing::warn!(error = format!("{error:#}"), "the grader does not list its suites: any name is accepted");
         Suites::default()
     })
 }
 
 /// Reads the page that checks traces in a browser from the grader; `None` if the grader was built without it.
-async fn read_checker(named: Option<&Path>) -> Option<String> {
-    let asked = async { Ok(String::from_utf8(run_grader(named, &["page", "--output", "-"]).await?)?) };
-    let asked = asked.await.inspect_err(|error: &anyhow::Error| {
+async fn read_checker(grader: Option<&Path>) -> Option<String> {
+    let page = async { Ok(String::from_utf8(run_grader(grader, &["page", "--output", "-"]).await?)?) };
+    let page = page.await.inspect_err(|error: &anyhow::Error| {
         tracing::info!(error = format!("{error:#}"), "the grader was built without the page /check");
     });
-    asked.ok().filter(|page| !page.is_empty())
+    page.ok().filter(|page| !page.is_empty())
 }
 
 /// Runs the grader with arguments and returns its standard output.
-async fn run_grader(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
-    let mut command = tokio::process::Command::new(find_grader(named)?);
-    command.args(words).stdin(std::process::Stdio::null()).kill_on_drop(true);
-    let said = tokio::time::timeout(ANSWER_TIMEOUT, command.output()).await.context("it does not answer")??;
-    if !said.status.success() {
-        bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
+async fn run_grader(grader: Option<&Path>, arguments: &[&str]) -> Result<Vec<u8>> {
+    let mut command = tokio::process::Command::new(find_grader(grader)?);
+    command.args(arguments).stdin(std::process::Stdio::null()).kill_on_drop(true);
+    let output =
+        tokio::time::timeout(ANSWER_TIMEOUT, command.output()).await.context("the grader does not answer")??;
+    if !output.status.success() {
+        bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
     }
-    Ok(said.stdout)
+    Ok(output.stdout)
 }
 
 /// Updates the database's tables to this version. A SQLite database with data is copied first.
@@ -208,7 +209,7 @@ async fn update_tables(database: &Database, folders: &ServiceFolders, address: &
     let version = db::read_version(database).await?;
     if version > 0 && version < db::NEWEST && matches!(address, Address::Sqlite(_)) {
         let copy = back_up(database, &folders.backups, version).await;
-        let copy = copy.context("the backup before the tables change")?;
+        let copy = copy.context("cannot back up the database before its tables change")?;
         tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
     }
     let applied = db::migrate(database).await?;
@@ -238,19 +239,19 @@ async fn back_up(database: &Database, backups: &Path, version: i64) -> Result<Pa
 }
 
 /// Opens the database and the store, without listening for requests.
-async fn open(place: &StorageArguments, public: String) -> Result<(App, Database)> {
-    let folders = ServiceFolders::find(place)?;
-    let (database, _) = folders.open_database(place).await?;
-    let store = folders.store(place)?;
+async fn open_service(storage: &StorageArguments, public: String) -> Result<(App, Database)> {
+    let folders = ServiceFolders::find(storage)?;
+    let (database, _) = folders.open_database(storage).await?;
+    let store = folders.store(storage)?;
     let options = Options { public, incoming: folders.incoming, ..Options::default() };
     let (notifier, policy) = (Notifier::default(), QueuePolicy::default());
     Ok((App::new(database.clone(), store, notifier, policy, Instruments::new()?, options), database))
 }
 
 pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
-    let known = || std::fs::read_to_string(arguments.place.data.join(ADDRESS_FILE)).ok();
+    let known = || std::fs::read_to_string(arguments.storage.data.join(ADDRESS_FILE)).ok();
     let public = arguments.public_url.clone().or_else(known).unwrap_or_else(|| "http://127.0.0.1:8080".to_owned());
-    let (app, database) = open(&arguments.place, public).await?;
+    let (app, database) = open_service(&arguments.storage, public).await?;
     let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
     println!("{}", app.welcome_address(&link));
     database.close().await;
@@ -258,7 +259,7 @@ pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
 }
 
 pub(super) async fn worker_token(arguments: &WorkerTokenArguments) -> Result<()> {
-    let (app, database) = open(&arguments.place, String::new()).await?;
+    let (app, database) = open_service(&arguments.storage, String::new()).await?;
     let token = app.worker_token(&arguments.name).await.map_err(|problem| anyhow!("{}", problem.detail))?;
     println!("{}", token.token);
     database.close().await;

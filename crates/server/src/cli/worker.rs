@@ -1,8 +1,9 @@
 //! The command `worker`, which grades the jobs of the queue.
 use super::{
     arguments::{WorkerArguments, WorkloadArguments},
+    cancel_on_signal,
     folders::ServiceFolders,
-    heartbeat, until_signalled,
+    heartbeat,
 };
 use crate::{
     db::{self, Database},
@@ -20,19 +21,19 @@ use std::{
 use tokio_util::sync::CancellationToken;
 
 pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
-    let stop = until_signalled()?;
+    let stop = cancel_on_signal()?;
     if let Some(server) = &arguments.server {
         let Some(file) = &arguments.token_file else {
             bail!("a worker for {server} needs its token: --token-file FILE");
         };
-        return work_for(server, file, arguments, stop).await;
+        return work_for_server(server, file, arguments, stop).await;
     }
-    let folders = ServiceFolders::find_database(&arguments.place)?;
-    let (database, address) = folders.open_database(&arguments.place).await?;
+    let folders = ServiceFolders::find_database(&arguments.storage)?;
+    let (database, address) = folders.open_database(&arguments.storage).await?;
     if db::read_version(&database).await? != db::NEWEST {
         bail!("the tables of {address} have another version; start the server first, which updates them");
     }
-    let store = folders.store(&arguments.place)?;
+    let store = folders.store(&arguments.storage)?;
     let notifier = Notifier::default();
     let local = LocalWorkers {
         folders,
@@ -42,30 +43,35 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         policy: queue_policy(&arguments.work),
         grader: find_grader(arguments.work.grader.as_deref())?,
     };
-    heartbeat::say_ready();
-    let seen = database.clone();
-    tokio::spawn(heartbeat::send_heartbeats(local.folders.data.clone(), async move || seen.is_healthy().await));
+    heartbeat::notify_ready();
+    let monitored = database.clone();
+    tokio::spawn(heartbeat::send_heartbeats(local.folders.data.clone(), async move || monitored.is_healthy().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
 }
 
 /// Grades jobs of a server on another machine, over HTTP.
-async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, stop: CancellationToken) -> Result<()> {
+async fn work_for_server(
+    server: &str,
+    token_file: &Path,
+    arguments: &WorkerArguments,
+    stop: CancellationToken,
+) -> Result<()> {
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();
     // The file's text is not repeated in the message, because it may be another secret.
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
-        bail!("{} contains no worker's token (fsw_...)", token_file.display());
+        bail!("{} must contain a worker's token (fsw_...)", token_file.display());
     }
     let grader = find_grader(arguments.work.grader.as_deref())?;
-    let folders = ServiceFolders::open(&arguments.place)?;
+    let folders = ServiceFolders::open(&arguments.storage)?;
     let name = unique_name(arguments.name.as_deref());
     folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
     let folder = folders.work_folder(&name);
-    heartbeat::say_ready();
+    heartbeat::notify_ready();
     // A worker that can't reach its server is healthy: it keeps trying, and keeps its jobs.
     tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async || true));
     let slots = slot_count(arguments.slots);
@@ -96,15 +102,15 @@ pub(super) fn queue_policy(work: &WorkloadArguments) -> QueuePolicy {
 }
 
 /// Returns the given grader, or the one in the folder of this program.
-pub(super) fn find_grader(named: Option<&Path>) -> Result<PathBuf> {
-    let path = match named {
+pub(super) fn find_grader(grader: Option<&Path>) -> Result<PathBuf> {
+    let path = match grader {
         Some(path) => path.to_owned(),
         None => std::env::current_exe()?.with_file_name("fosssim-oracle"),
     };
     if !path.is_file() {
         bail!("there is no grader at {}; build fosssim-oracle, or choose it with --grader", path.display());
     }
-    std::path::absolute(&path).context("the grader's path")
+    std::path::absolute(&path).context("cannot find the grader's absolute path")
 }
 
 /// The server's own workers, which access the database directly.

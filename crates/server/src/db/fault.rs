@@ -11,7 +11,7 @@ pub enum DbError {
     #[error("the database is busy: {0}")]
     Busy(String),
     /// A row with the same key exists already. The statement's caller knows which row.
-    #[error("it exists already: {0}")]
+    #[error("a row with this key exists already: {0}")]
     Conflict(String),
     /// A statement is wrong, or a value has an unexpected form.
     #[error("the database rejected the statement: {0}")]

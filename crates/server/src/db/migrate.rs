@@ -50,7 +50,7 @@ const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
 pub enum MigrateError {
     /// A newer program has changed the tables.
     #[error(
-        "the database has version {found}, this program knows versions up to {NEWEST}: start the newer program, or \
+        "the database has version {found}, but this program knows versions up to {NEWEST}: start the newer program, or \
         restore the backup that it made"
     )]
     Newer {

@@ -16,7 +16,7 @@ pub use address::Address;
 pub use fault::DbError;
 pub use migrate::{MigrateError, NEWEST, migrate, read_version};
 pub use transaction::Transaction;
-use transaction::{Faults, Inner, Turn};
+use transaction::{Inner, LastFailure, Turn};
 pub use value::{Column, FromRow, Row, Value};
 pub(crate) use value::{from_row, read_row};
 
@@ -51,8 +51,8 @@ const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s
 /// Returns whether a connection can be used again; otherwise the pool closes it and opens a new one. A connection whose
 /// COMMIT and ROLLBACK both failed, for example on a full disk, stays in a transaction forever. A connection that was
 /// opened before the database's last failure may lead to a server that is now read-only or stopped.
-fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
-    !connection.is_in_transaction() && faults.trust(age)
+fn is_reusable(connection: &impl Connection, faults: &LastFailure, age: Duration) -> bool {
+    !connection.is_in_transaction() && faults.may_use(age)
 }
 
 /// Returns the options for connecting to PostgreSQL. A pooler rejects start-up settings that it does not know.
@@ -69,12 +69,12 @@ fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
 #[derive(Debug, Clone)]
 pub struct Database {
     engine: Engine,
-    faults: Faults,
+    faults: LastFailure,
     /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
     /// The turns of requests without priority. They limit how many of these requests use connections, or wait for them.
     turns: Arc<Semaphore>,
-    goes_first: bool,
+    has_priority: bool,
 }
 
 #[derive(Debug, Clone)]
@@ -108,7 +108,7 @@ impl Database {
             Address::Sqlite(_) => 1,
             Address::Postgres(_) => MAX_CONNECTIONS - PRIORITY_CONNECTIONS,
         };
-        let faults = Faults::default();
+        let faults = LastFailure::default();
         let good = faults.clone();
         let engine = match address {
             Address::Sqlite(file) => {
@@ -124,10 +124,10 @@ impl Database {
                     .busy_timeout(WAIT_LIMIT)
                     .disable_statement_logging();
                 let pool = |connections| {
-                    let good = good.clone();
+                    let faults = good.clone();
                     SqlitePoolOptions::new()
                         .before_acquire(move |connection, about| {
-                            Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
+                            Box::pin(std::future::ready(Ok(is_reusable(connection, &faults, about.age))))
                         })
                         .max_connections(connections)
                         .acquire_timeout(WAIT_LIMIT)
@@ -140,7 +140,7 @@ impl Database {
             Address::Postgres(url) => {
                 let pool = PgPoolOptions::new()
                     .before_acquire(move |connection, about| {
-                        Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
+                        Box::pin(std::future::ready(Ok(is_reusable(connection, &good, about.age))))
                     })
                     .max_connections(MAX_CONNECTIONS)
                     .acquire_timeout(WAIT_LIMIT)
@@ -150,18 +150,18 @@ impl Database {
             }
         };
         let turns = Arc::new(Semaphore::new(turns as usize));
-        Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
+        Ok(Self { engine, faults, is_outdated: Arc::default(), turns, has_priority: false })
     }
 
     /// Returns a handle to the same database with priority, for callers that must not wait, such as workers, whose
     /// leases expire. Even during many uploads, grades are stored and waiting jobs are claimed.
     pub fn with_priority(&self) -> Self {
-        Self { goes_first: true, ..self.clone() }
+        Self { has_priority: true, ..self.clone() }
     }
 
     /// Waits for a turn, if one is needed.
     async fn acquire_turn(&self) -> Result<Turn, sqlx::Error> {
-        if self.goes_first {
+        if self.has_priority {
             return Ok(None);
         }
         let turn = tokio::time::timeout(WAIT_LIMIT, self.turns.clone().acquire_owned()).await;
@@ -184,7 +184,7 @@ impl Database {
     /// Fails if the database can't be reached, or is busy for half a minute.
     pub async fn begin(&self) -> Result<Transaction, DbError> {
         if self.is_outdated.load(Ordering::Relaxed) {
-            return Err(DbError::Unavailable("a newer program has changed its tables".to_owned()));
+            return Err(DbError::Unavailable("a newer program has changed the database's tables".to_owned()));
         }
         match &self.engine {
             // A transaction that begins by reading cannot write if another transaction has committed in the meantime.
@@ -200,19 +200,19 @@ impl Database {
     /// # Errors
     ///
     /// Fails like [`Database::begin`], after at most `patience`.
-    pub async fn begin_within(&self, patience: Duration) -> Result<Transaction, DbError> {
-        let begun = Instant::now();
+    pub async fn begin_with_timeout(&self, patience: Duration) -> Result<Transaction, DbError> {
+        let begin = Instant::now();
         loop {
-            let tried = Instant::now();
+            let start = Instant::now();
             match self.begin().await {
-                Err(error) if error.is_transient() && tried.elapsed() >= WAIT_LIMIT && begun.elapsed() < patience => {}
+                Err(error) if error.is_transient() && start.elapsed() >= WAIT_LIMIT && begin.elapsed() < patience => {}
                 other => return other,
             }
         }
     }
 
-    /// Returns whether the database answers, and its tables are not from a newer program. If they are, nothing is
-    /// written from then on.
+    /// Returns whether the database answers, and its tables are not from a newer program. If they are from a newer
+    /// program, nothing is written from then on.
     pub async fn is_healthy(&self) -> bool {
         let version = read_version(self).await;
         if version.as_ref().is_ok_and(|version| *version > NEWEST) {
@@ -241,14 +241,14 @@ impl Database {
         &self,
         make: fn(T) -> Inner,
         begin: impl FnOnce() -> F,
-        in_turn: bool,
+        needs_turn: bool,
     ) -> Result<Transaction, DbError> {
-        let begun = async {
-            let turn = if in_turn { self.acquire_turn().await? } else { None };
+        let transaction = async {
+            let turn = if needs_turn { self.acquire_turn().await? } else { None };
             Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), turn))
         }
         .await;
-        begun.map_err(|error| self.faults.note(error))
+        transaction.map_err(|error| self.faults.record(error))
     }
 
     /// Copies a SQLite database into a new file. The copy is consistent even while others write. PostgreSQL has its own

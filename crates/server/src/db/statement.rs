@@ -9,15 +9,15 @@ pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
         Dialect::Postgres => "-- only sqlite",
     };
     let mut skips = false;
-    let mut kept = String::with_capacity(script.len());
+    let mut lines = String::with_capacity(script.len());
     for line in script.lines() {
         skips = line == other || (skips && line != "-- end");
         if !skips {
-            kept.push_str(line);
-            kept.push('\n');
+            lines.push_str(line);
+            lines.push('\n');
         }
     }
-    kept
+    lines
 }
 
 /// Renders the statement for an engine. `{now}` is the engine's clock, and `{int}`, `{id}` and `{strict}` are words of
@@ -26,7 +26,7 @@ pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
 /// placeholders are numbered. Statements contain no other braces or question marks: values are never part of a
 /// statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
-    let words: [(&str, &str); 11] = match dialect {
+    let substitutes: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [
             ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
             ("{int}", "INTEGER"),
@@ -63,14 +63,14 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
         ],
     };
     let mut text = statement.to_owned();
-    for (word, meaning) in words {
+    for (word, meaning) in substitutes {
         text = text.replace(word, meaning);
     }
     if dialect == Dialect::Sqlite {
         return text;
     }
-    let counted = |(count, part): (usize, &str)| if count > 0 { format!("${count}{part}") } else { part.to_owned() };
-    text.split('?').enumerate().map(counted).collect()
+    let number = |(count, part): (usize, &str)| if count > 0 { format!("${count}{part}") } else { part.to_owned() };
+    text.split('?').enumerate().map(number).collect()
 }
 
 #[cfg(test)]

@@ -12,28 +12,28 @@ use tokio::sync::OwnedSemaphorePermit;
 #[derive(Debug)]
 pub struct Transaction {
     inner: Inner,
-    faults: Faults,
-    #[expect(dead_code, reason = "held, and given back with the transaction")]
+    faults: LastFailure,
+    #[expect(dead_code, reason = "held until the transaction ends")]
     turn: Turn,
 }
 
 /// The time of the last failure that a broken connection may have caused. Connections from before that time are closed.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
+pub(super) struct LastFailure(Arc<Mutex<Option<Instant>>>);
 
-impl Faults {
+impl LastFailure {
     /// Returns whether a connection of this age was opened after the last failure.
-    pub(super) fn trust(&self, age: Duration) -> bool {
+    pub(super) fn may_use(&self, age: Duration) -> bool {
         let last = *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         last.is_none_or(|last| last.elapsed() > age)
     }
 
-    /// Records the time of a failure, unless it only means that all connections are in use. Returns the error that
-    /// callers see.
-    pub(super) fn note(&self, error: sqlx::Error) -> DbError {
-        let is_of_pool = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
+    /// Records the time of a failure, and returns the error that callers see. The failure is ignored if it only means
+    /// that all connections are in use.
+    pub(super) fn record(&self, error: sqlx::Error) -> DbError {
+        let is_pool_error = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
         let error = DbError::from(error);
-        if matches!(error, DbError::Unavailable(_)) && !is_of_pool {
+        if matches!(error, DbError::Unavailable(_)) && !is_pool_error {
             *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some(Instant::now());
         }
         error
@@ -65,7 +65,7 @@ macro_rules! query {
 }
 
 impl Transaction {
-    pub(super) fn new(inner: Inner, faults: Faults, turn: Turn) -> Self {
+    pub(super) fn new(inner: Inner, faults: LastFailure, turn: Turn) -> Self {
         Self { inner, faults, turn }
     }
 
@@ -91,7 +91,7 @@ impl Transaction {
                 query!(Postgres, text, values).execute(&mut **inner).await.map(|done| done.rows_affected())
             }
         };
-        done.map_err(|error| self.faults.note(error))
+        done.map_err(|error| self.faults.record(error))
     }
 
     /// Runs a statement and returns its rows.
@@ -110,7 +110,7 @@ impl Transaction {
                 rows.map(|rows| rows.into_iter().map(|row| Row(value::Inner::Postgres(row))).collect())
             }
         };
-        rows.map_err(|error| self.faults.note(error))
+        rows.map_err(|error| self.faults.record(error))
     }
 
     /// Runs a statement and reads its rows.
@@ -146,7 +146,7 @@ impl Transaction {
     ///
     /// Fails if the database fails or returns no row.
     pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
-        self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("no row: {statement}")))
+        self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("the result is empty: {statement}")))
     }
 
     /// Runs several statements that are separated by semicolons and take no values, such as definitions of tables.
@@ -170,6 +170,6 @@ impl Transaction {
             Inner::Sqlite(inner) => inner.commit().await,
             Inner::Postgres(inner) => inner.commit().await,
         };
-        committed.map_err(|error| self.faults.note(error))
+        committed.map_err(|error| self.faults.record(error))
     }
 }

@@ -70,7 +70,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
         "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes, CAST(coalesce(max(bytes), 0) AS {int}) AS most
         FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";
     let row = transaction.one(statement, values![]).await?;
-    metrics.kept = [row.int("bytes")?, row.int("most")?];
+    metrics.stored_bytes = [row.int("bytes")?, row.int("most")?];
     let recent = health::recency_millis(policy);
     let statement =
         "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
@@ -78,7 +78,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
                WHERE job.state = 'running' AND job.worker = worker.name) THEN 1 END) AS working
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let row = transaction.one(statement, values![recent, recent]).await?;
-    (metrics.workers, metrics.slots, metrics.aside) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
+    (metrics.workers, metrics.slots, metrics.paused) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
     metrics.working = row.int("working")?;
     Ok(metrics)
 }

@@ -1,6 +1,6 @@
 //! Roles and their rights. Requests reach the database only through a role, and the type of each role has only the
 //! functions that the role allows. The roles are a [`Visitor`] who is not signed in, a [`Person`] who is signed in, a
-//! [`Member`] of a course with their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with its
+//! [`Member`] of a course with their own submissions, its [`Staff`], an [`Admin`], and a [`RemoteWorker`] with its
 //! jobs. The type that a handler takes names the role that it serves; a handler without such a type cannot read data.
 
 mod accounts;
@@ -15,24 +15,24 @@ mod view;
 pub use accounts::identity::{Link, NewSecret, NewToken, TokenInfo};
 pub use accounts::limits::{Transfer, TransferLimits};
 pub use assignments::settings::Settings;
-pub(crate) use assignments::settings::{moment, moment_schema};
+pub(crate) use assignments::settings::{read_moment, time_schema};
 pub use assignments::suites::{Suites, is_file_name};
 pub use counts::Counts;
 pub use courses::import::MemberLine;
 pub use courses::members::MemberInfo;
-pub use platforms::choice::{LinkStep, LinkTarget, slug_of};
+pub use platforms::choice::{LinkStep, LinkTarget, propose_slug};
 pub use platforms::launch::{LaunchTarget, LoginAnswer, LoginRequest};
-pub use platforms::platform::{RosterRead, RosterWish, ScoreInfo};
+pub use platforms::platform::{RosterMode, RosterRead, ScoreInfo};
 pub use roles::admin::{Admin, CourseSize, ListedAccount};
 pub use roles::member::Member;
 pub use roles::person::{CourseMembership, Person};
-pub use roles::remote::Remote;
+pub use roles::remote::RemoteWorker;
 pub use roles::staff::{AssignmentChange, NewSuite, Staff, UploadedSuite};
 pub use roles::visitor::{Secrets, Visitor};
-pub use submissions::again::RegradeOrder;
-pub use submissions::failed::{AttemptChange, FailedScenes, KeptResult};
+pub use submissions::attempt_changes::{AttemptChange, FailedScenes, StoredResult};
 pub use submissions::mark::{Overview, Request, StudentHistory};
 pub use submissions::regrade::{Change, Regrade, RegradeState};
+pub use submissions::repeated_grading::EnqueuedJobs;
 pub use submissions::standings::{CountedSubmission, ShortStanding, Standing};
 pub use submissions::submit::{SubmitResult, Upload};
 pub use view::{
@@ -72,7 +72,8 @@ struct Parts {
     throttle: Throttle,
     /// The standings of classes, which simultaneous requests share.
     standings: SharedStandings,
-    /// The key that signs data which come back later. It is read from the database when it is first needed.
+    /// The key with which the service signs data that it receives back later. It is read from the database when it is
+    /// first needed.
     signing_key: OnceCell<String>,
     instruments: Instruments,
     options: Options,
@@ -166,7 +167,7 @@ impl App {
     /// # Errors
     ///
     /// Fails if the disk is nearly full.
-    pub fn ensure_room(&self) -> Result<(), crate::problem::Problem> {
-        self.0.storage.ensure_room()
+    pub fn ensure_disk_space(&self) -> Result<(), crate::problem::Problem> {
+        self.0.storage.ensure_disk_space()
     }
 }

@@ -3,12 +3,12 @@ use super::{App, Settings};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
-    late::Lateness,
+    late_policy::Lateness,
     queue::{self, Lane, Progress},
-    shown::{ShownGrade, round_to_hour},
     store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
+    visible_grade::{VisibleGrade, round_to_hour},
 };
 use serde::{Deserialize, Serialize};
 use std::ops::Deref;
@@ -269,7 +269,7 @@ pub struct Queue {
     pub running: i64,
     /// The number of jobs that were given up and that staff must check.
     pub buried: i64,
-    /// The workers from which the server has heard recently.
+    /// The workers that have reported recently.
     pub workers: Vec<QueueWorker>,
 }
 
@@ -284,7 +284,7 @@ pub struct QueueWorker {
     pub slots: i64,
     /// The number of jobs that the worker runs at present.
     pub running: i64,
-    /// The time at which the worker was last heard from, in milliseconds since 1970.
+    /// The time of the worker's last report, in milliseconds since 1970.
     pub seen_at: i64,
     /// The time since which the worker claims no jobs because it can't grade, in milliseconds since 1970; null if it
     /// can.
@@ -380,10 +380,10 @@ impl Submission {
     /// Shows the points that staff set, if any, instead of the grader's. They are not reduced for being late.
     pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
-        let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
+        let by_hand = self.mark.as_ref().and_then(|mark| mark.points.clone());
         let points = grade.outcome.points.take();
         grade.outcome.points =
-            given.or_else(|| points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points))));
+            by_hand.or_else(|| points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points))));
     }
 }
 
@@ -428,7 +428,7 @@ pub(super) async fn submission(
     let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job
-        && let Some(place) = queue::queue_place(transaction, &app.0.policy, Lane::Grading, job).await?
+        && let Some(place) = queue::find_queue_position(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
         submission.lacks_worker = !place.is_served;
@@ -468,25 +468,25 @@ pub(super) async fn history(
         LEFT JOIN account ON account.id = grade_change.changed_by
         WHERE grade_change.submission = ? ORDER BY grade_change.id";
     let rows = transaction.rows(statement, values![submission]).await?;
-    let shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
+    let read_shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
         let text = row.maybe_text(column)?.filter(|_| withheld);
-        Ok(text.as_deref().and_then(ShownGrade::read).map(ShownGrade::line))
+        Ok(text.as_deref().and_then(VisibleGrade::from_text).map(VisibleGrade::verdict_and_points))
     };
-    let mut given = None;
+    let mut by_hand = None;
     let read = |row: &Row| {
-        let old = match shown(row, "old_shown")? {
+        let old = match read_shown(row, "old_shown")? {
             Some((code, points)) => (Some(code), points),
             None => (row.maybe_text("old_code")?, row.maybe_text("old_points")?),
         };
-        let new = match shown(row, "new_shown")? {
+        let new = match read_shown(row, "new_shown")? {
             Some(line) => line,
             None => (row.text("new_code")?, row.maybe_text("new_points")?),
         };
         let ((old_code, old_points), (new_code, new_points)) = (old, new);
-        let old_points = given.clone().or(old_points);
+        let old_points = by_hand.clone().or(old_points);
         // The points that staff set count instead of the grader's until staff remove them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
-            given = row.maybe_text("given")?;
+            by_hand = row.maybe_text("given")?;
         }
         Ok(read_row!(row => History {
             reason, by = "login", result, version, grader;
@@ -494,7 +494,7 @@ pub(super) async fn history(
             old_code,
             old_points,
             new_code,
-            new_points: given.clone().or(new_points),
+            new_points: by_hand.clone().or(new_points),
             by_what: describe_task(&row.text("task")?, is_staff),
             task: if is_staff { row.text("task")? } else { String::new() },
         }))
@@ -515,7 +515,7 @@ fn describe_task(task: &str, is_staff: bool) -> String {
 
 impl FromRow for Assignment {
     fn from_row(row: &Row) -> Result<Self, DbError> {
-        let settings = Settings::read(&row.text("settings")?)?;
+        let settings = Settings::from_json(&row.text("settings")?)?;
         Ok(read_row!(row => Self { id, slug, title, visible, published_at, revision; settings }))
     }
 }
@@ -538,7 +538,7 @@ impl<'a> Entry<'a> {
 }
 
 /// Writes an entry into the audit log.
-pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
+pub(super) async fn log_event(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
     let Entry { kind, actor, course, assignment, submission, text } = *entry;

@@ -43,21 +43,21 @@ const MAX_WAIT: Duration = Duration::from_secs(3600);
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform does not answer, or is overloaded; a later request may succeed.
-    #[error("it returned an unexpected answer: {why}")]
-    Away {
+    #[error("the platform does not answer correctly: {reason}")]
+    Unavailable {
         /// The platform's message, or a description of the error.
-        why: String,
+        reason: String,
         /// The pause that the platform requests; `None` if it requests no particular pause.
         after: Option<Duration>,
     },
     /// The platform rejects the request, for the given reason.
-    #[error("it refuses: {0}")]
-    Refused(String),
+    #[error("the platform rejects the request: {0}")]
+    Rejected(String),
 }
 
 impl ServiceFault {
-    fn from_outage(why: impl fmt::Display) -> Self {
-        Self::Away { why: why.to_string(), after: None }
+    fn from_outage(reason: impl fmt::Display) -> Self {
+        Self::Unavailable { reason: reason.to_string(), after: None }
     }
 }
 
@@ -81,28 +81,28 @@ impl ServiceAnswer {
     /// Parses the answer's content. `what` names the content in error messages.
     pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
         let read = serde_json::from_slice(&self.body);
-        read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
+        read.map_err(|error| ServiceFault::Rejected(format!("{what} can't be read: {error}")))
     }
 
     /// Returns the answer if it reports success.
     pub(super) fn ensure_success(self) -> Result<Self, ServiceFault> {
         // The message contains the beginning of the platform's text, on one line.
-        let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
-        let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let text = format!("{} {said}", self.status);
+        let excerpt: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
+        let excerpt: String = excerpt.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let text = format!("{} {excerpt}", self.status);
         match self.status {
             200..=299 => Ok(self),
             // Redirections are not followed: only the address that an administrator registered is called.
-            300..=399 => Err(ServiceFault::Refused(format!("{} leads elsewhere", self.status))),
-            408 | 425 | 429 | 500.. => Err(ServiceFault::Away { why: text, after: self.after }),
-            _ => Err(ServiceFault::Refused(text)),
+            300..=399 => Err(ServiceFault::Rejected(format!("{} redirects elsewhere", self.status))),
+            408 | 425 | 429 | 500.. => Err(ServiceFault::Unavailable { reason: text, after: self.after }),
+            _ => Err(ServiceFault::Rejected(text)),
         }
     }
 }
 
 /// A request to a platform's service.
 #[derive(Debug, Clone)]
-pub(super) struct Ask {
+pub(super) struct ServiceRequest {
     pub(super) address: String,
     pub(super) accept: &'static str,
     /// The media type and the content of a POST request; `None` for a GET request.
@@ -139,23 +139,28 @@ impl Client {
 
     /// Downloads a public file of a platform.
     pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
-        let ask = Ask { address: address.to_owned(), accept: "application/json", body: None };
-        self.send(platform, &ask, None).await?.ensure_success()
+        let request = ServiceRequest { address: address.to_owned(), accept: "application/json", body: None };
+        self.send(platform, &request, None).await?.ensure_success()
     }
 
-    async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
-        let Some(url) = platform.service(&ask.address, self.over_http) else {
+    async fn send(
+        &self,
+        platform: &Platform,
+        ask: &ServiceRequest,
+        token: Option<&str>,
+    ) -> Result<ServiceAnswer, ServiceFault> {
+        let Some(url) = platform.service_address(&ask.address, self.over_http) else {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
-            let host = host.unwrap_or_else(|| "somewhere else".to_owned());
-            return Err(ServiceFault::Refused(format!(
-                "its service is on {host}, which is not one of the platform's hosts; an administrator can add it"
+            let host = host.unwrap_or_else(|| "another host".to_owned());
+            return Err(ServiceFault::Rejected(format!(
+                "the service is on {host}, which is not one of the platform's hosts; an administrator can add it"
             )));
         };
         let (agent, ask) = (self.agent.clone(), ask.clone());
         let authorization = token.map(|token| format!("Bearer {token}"));
-        let asked =
+        let answer =
             tokio::task::spawn_blocking(move || send_blocking(&agent, &url, &ask, authorization.as_deref())).await;
-        asked.map_err(ServiceFault::from_outage)?
+        answer.map_err(ServiceFault::from_outage)?
     }
 
     /// Calls a service with a token for a scope. If the platform rejects the token, the call is repeated with a new
@@ -165,12 +170,12 @@ impl Client {
         database: &Database,
         platform: &Platform,
         scope: &str,
-        ask: &Ask,
+        ask: &ServiceRequest,
     ) -> Result<ServiceAnswer, ServiceFault> {
         let token = self.token(database, platform, scope).await?;
-        let told = self.send(platform, ask, Some(&token)).await?;
-        if told.status != 401 {
-            return told.ensure_success();
+        let answer = self.send(platform, ask, Some(&token)).await?;
+        if answer.status != 401 {
+            return answer.ensure_success();
         }
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&(platform.id, scope.to_owned()));
         let token = self.token(database, platform, scope).await?;
@@ -201,19 +206,19 @@ impl Client {
             .append_pair("client_assertion", &assertion)
             .append_pair("scope", scope)
             .finish();
-        let ask = Ask {
+        let request = ServiceRequest {
             address: settings.token_url.clone(),
             accept: "application/json",
             body: Some(("application/x-www-form-urlencoded", body.into_bytes())),
         };
-        let told = self.send(platform, &ask, None).await?.ensure_success()?;
-        let token: Token = told.read("its token")?;
+        let answer = self.send(platform, &request, None).await?.ensure_success()?;
+        let token: Token = answer.read("the platform's token")?;
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
-            return Err(ServiceFault::Refused("its token is invalid".to_owned()));
+            return Err(ServiceFault::Rejected("the platform's token is invalid".to_owned()));
         }
-        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(RENEWAL_MARGIN);
-        let kept = (token.access_token.clone(), Instant::now() + lasts);
-        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, kept);
+        let lifetime = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(RENEWAL_MARGIN);
+        let known = (token.access_token.clone(), Instant::now() + lifetime);
+        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, known);
         Ok(token.access_token)
     }
 }
@@ -226,7 +231,7 @@ pub(super) fn now_seconds() -> u64 {
 fn send_blocking(
     agent: &Agent,
     url: &Url,
-    ask: &Ask,
+    ask: &ServiceRequest,
     authorization: Option<&str>,
 ) -> Result<ServiceAnswer, ServiceFault> {
     let mut request = Request::builder().uri(url.as_str()).header("Accept", ask.accept);

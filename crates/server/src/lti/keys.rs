@@ -35,8 +35,8 @@ impl SigningKey {
 ///
 /// Fails if the database fails.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
-    let made = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
-    let (private, modulus, exponent) = made?;
+    let generated = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
+    let (private, modulus, exponent) = generated?;
     let mut transaction = database.begin().await?;
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
@@ -76,8 +76,8 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 /// Returns the key for signatures: the newest one that platforms had time to read, or otherwise the oldest.
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
-    let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
-    let row = known.or(rows.last()).ok_or_else(|| DbError::Other("the server has no signing key".to_owned()))?;
+    let ready = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
+    let row = ready.or(rows.last()).ok_or_else(|| DbError::Other("the server has no signing key".to_owned()))?;
     let der = URL_SAFE_NO_PAD
         .decode(row.text("private_key")?)
         .map_err(|error| DbError::Other(format!("the key is damaged: {error}")))?;

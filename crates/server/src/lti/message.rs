@@ -79,7 +79,7 @@ pub struct LtiPerson {
     pub email: Option<String>,
 }
 
-/// A platform's message about a person: who comes, and from which course and link.
+/// A platform's message about a person who opens a link.
 #[derive(Debug, Clone)]
 pub struct Message {
     /// The person who comes to this service.
@@ -161,7 +161,7 @@ struct Endpoint {
 }
 
 #[derive(Debug, Clone, Deserialize)]
-struct Names {
+struct MembershipService {
     context_memberships_url: String,
 }
 
@@ -189,7 +189,7 @@ struct Claims {
     #[serde(rename = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint")]
     endpoint: Option<Endpoint>,
     #[serde(rename = "https://purl.imsglobal.org/spec/lti-nrps/claim/namesroleservice")]
-    names: Option<Names>,
+    names: Option<MembershipService>,
     #[serde(rename = "https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings")]
     deep_linking: Option<DeepLinking>,
     name: Option<String>,
@@ -199,7 +199,7 @@ struct Claims {
 }
 
 /// Returns the name of the key with which a message claims to be signed.
-pub(super) fn key_of(token: &str) -> Result<String, Rejection> {
+pub(super) fn read_key_name(token: &str) -> Result<String, Rejection> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
     ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)
@@ -246,11 +246,11 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     let (resource, deep_linking) = match claims.message_type.as_str() {
         "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
         "LtiDeepLinkingRequest" => {
-            let wanted = claims.deep_linking.ok_or_else(|| missing("deep_linking_settings"))?;
-            if !wanted.accept_types.iter().any(|kind| kind == "ltiResourceLink") {
-                return Err(Rejection::Content("no link to a resource may be chosen".to_owned()));
+            let deep_linking = claims.deep_linking.ok_or_else(|| missing("deep_linking_settings"))?;
+            if !deep_linking.accept_types.iter().any(|kind| kind == "ltiResourceLink") {
+                return Err(Rejection::Content("the platform does not accept links to resources".to_owned()));
             }
-            (None, Some(wanted))
+            (None, Some(deep_linking))
         }
         _ => return Err(Rejection::Content("this message type is not supported".to_owned())),
     };
@@ -260,14 +260,14 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
         return Err(Rejection::Content("the names of courses and links must be 1 to 255 characters long".to_owned()));
     }
     let endpoint = claims.endpoint.unwrap_or_default();
-    let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);
-    let scores = may(scope::SCORE_SCOPE);
-    let columns = scores && may(scope::LINE_ITEM);
+    let may_use = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);
+    let scores = may_use(scope::SCORE_SCOPE);
+    let columns = scores && may_use(scope::LINE_ITEM);
     Ok(Message {
         person: LtiPerson {
             subject: claims.sub,
-            role: role_of(&claims.roles),
-            name: name_of(claims.name, [claims.given_name, claims.family_name]),
+            role: find_role(&claims.roles),
+            name: join_name(claims.name, [claims.given_name, claims.family_name]),
             email: claims.email,
         },
         arrival: Arrival {
@@ -284,14 +284,14 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
 }
 
 /// Returns a person's full name; if the platform does not send it, the first and last name joined.
-pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
-    let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
-    whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
+pub(super) fn join_name(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
+    let joined = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
+    whole.or(Some(joined)).filter(|name| !name.trim().is_empty())
 }
 
 /// Returns a person's role in the course, according to the roles that the platform sends (LTI A.2.3). A role in the
-/// institution or the system gives no role in the course, unless it is administrator and the only role.
-pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
+/// institution or the system gives no role in the course, except to an administrator without any other role.
+pub(crate) fn find_role(roles: &[String]) -> Option<LtiRole> {
     const COURSE_ROLES: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, but still in use.
     let in_course = |role: &str| -> Option<String> {
@@ -302,20 +302,20 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
             None => rest.strip_prefix('#').map(str::to_owned),
         }
     };
-    let named: Vec<String> =
+    let course_roles: Vec<String> =
         roles.iter().filter_map(|role| if role.contains('/') { in_course(role) } else { Some(role.clone()) }).collect();
-    let is = |name: &str| named.iter().any(|role| role == name);
-    if is("Instructor") || is("Administrator") || is("ContentDeveloper") {
+    let has_role = |name: &str| course_roles.iter().any(|role| role == name);
+    if has_role("Instructor") || has_role("Administrator") || has_role("ContentDeveloper") {
         return Some(LtiRole::Staff);
     }
-    if is("Learner") {
+    if has_role("Learner") {
         return Some(LtiRole::Student);
     }
-    let administers = |role: &String| {
-        let place = role.strip_prefix("http://purl.imsglobal.org/vocab/lis/v2/");
-        matches!(place, Some("institution/person#Administrator" | "system/person#Administrator"))
+    let is_administrator = |role: &String| {
+        let name = role.strip_prefix("http://purl.imsglobal.org/vocab/lis/v2/");
+        matches!(name, Some("institution/person#Administrator" | "system/person#Administrator"))
     };
-    (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
+    (course_roles.is_empty() && roles.iter().any(is_administrator)).then_some(LtiRole::Staff)
 }
 
 /// Returns the signed answer to a request for a link. It contains one link, which opens an assignment (DL 4.5).
@@ -362,7 +362,7 @@ mod tests {
     fn roles_in_the_course_decide() {
         const MEMBER: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
         const PERSON: &str = "http://purl.imsglobal.org/vocab/lis/v2/institution/person";
-        let role = |roles: &[String]| role_of(roles);
+        let role = |roles: &[String]| find_role(roles);
         assert_eq!(role(&[format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
         assert_eq!(role(&["Learner".to_owned()]), Some(LtiRole::Student));
         assert_eq!(role(&[format!("{MEMBER}#Instructor"), format!("{MEMBER}#Learner")]), Some(LtiRole::Staff));

@@ -20,7 +20,7 @@ pub use keys::{new_key, public_keys};
 pub use message::{
     Arrival, Context, DeepLinking, LtiPerson, LtiRole, Message, Rejection, Resource, deep_linking_response,
 };
-pub use platform::{Platform, PlatformWish};
+pub use platform::{Platform, PlatformSettings};
 pub use roster::fetch as fetch_roster;
 pub use sender::run as send_scores;
 
@@ -59,7 +59,7 @@ impl Lti {
     ///
     /// Fails if the message is rejected. The error is the reason.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
-        let kid = message::key_of(token)?;
+        let kid = message::read_key_name(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;
         message::read(platform, token, &key, nonce)
     }

@@ -11,7 +11,8 @@ use utoipa::ToSchema;
 /// The addresses of a platform. Platforms show them on their pages about external tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PlatformWish {
+#[schema(as = PlatformWish)]
+pub struct PlatformSettings {
     /// The issuer of the platform's messages (called "platform ID").
     #[schema(value_type = Word)]
     pub issuer: String,
@@ -51,26 +52,26 @@ pub struct Platform {
     pub name: String,
     /// The registered addresses and deployments.
     #[serde(flatten)]
-    pub settings: PlatformWish,
+    pub settings: PlatformSettings,
 }
 
 /// Parses an address that this service may call: HTTPS with a host, and no user name, password or fragment.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
-    let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
-    let plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
-    (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
+    let is_secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
+    let is_plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
+    (is_secure && is_plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
 /// Returns the host and port of an address, in the form of an origin.
-fn place(url: &Url) -> String {
+fn origin(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),
         (host, _) => host.unwrap_or_default().to_owned(),
     }
 }
 
-impl PlatformWish {
+impl PlatformSettings {
     /// Checks that the registration is valid.
     ///
     /// # Errors
@@ -97,7 +98,7 @@ impl PlatformWish {
             self.audience.as_deref().is_none_or(is_word),
             Problem::invalid("audience must be 1 to 255 characters long"),
         )?;
-        let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| place(&url) == *host);
+        let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| origin(&url) == *host);
         ensure(
             self.hosts.len() <= 50 && self.hosts.iter().all(is_host),
             Problem::invalid("hosts must be a list of host names, such as lms.example.org"),
@@ -116,24 +117,25 @@ impl FromRow for Platform {
 
 impl Platform {
     /// Returns the hosts of the platform's services.
-    fn places(&self, over_http: bool) -> Vec<String> {
+    fn service_hosts(&self, over_http: bool) -> Vec<String> {
         let settings = &self.settings;
-        let own = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
-        let own = own.into_iter().filter_map(|text| address(text, over_http)).map(|url| place(&url));
-        own.chain(settings.hosts.iter().cloned()).collect()
+        let hosts = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
+        let hosts = hosts.into_iter().filter_map(|text| address(text, over_http)).map(|url| origin(&url));
+        hosts.chain(settings.hosts.iter().cloned()).collect()
     }
 
     /// Returns an address of one of the platform's services. Only registered hosts are allowed, so that a message can't
     /// make this service call other hosts, or send its token to them.
-    pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
+    pub(crate) fn service_address(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
-        self.places(over_http).contains(&place(&url)).then_some(url)
+        self.service_hosts(over_http).contains(&origin(&url)).then_some(url)
     }
 
     /// Returns the origins whose pages may show a page of this service in a frame.
     pub fn origins(&self, over_http: bool) -> String {
         let scheme = if over_http { "http://" } else { "https://" };
-        let mut places: Vec<String> = self.places(over_http).iter().map(|place| format!("{scheme}{place}")).collect();
+        let mut places: Vec<String> =
+            self.service_hosts(over_http).iter().map(|place| format!("{scheme}{place}")).collect();
         places.sort();
         places.dedup();
         places.join(" ")
@@ -144,8 +146,8 @@ impl Platform {
 mod tests {
     use super::*;
 
-    fn wish() -> PlatformWish {
-        PlatformWish {
+    fn wish() -> PlatformSettings {
+        PlatformSettings {
             issuer: "https://lms.example.org".to_owned(),
             client_id: "client".to_owned(),
             login_url: "https://lms.example.org/auth".to_owned(),
@@ -170,20 +172,20 @@ mod tests {
             "https://",
             "",
         ] {
-            let wish = PlatformWish { keys_url: address.to_owned(), ..wish() };
-            assert!(wish.check(false).is_err(), "{address}");
+            let settings = PlatformSettings { keys_url: address.to_owned(), ..wish() };
+            assert!(settings.check(false).is_err(), "{address}");
         }
-        let open = PlatformWish { keys_url: "http://127.0.0.1:1/".to_owned(), ..wish() };
+        let open = PlatformSettings { keys_url: "http://127.0.0.1:1/".to_owned(), ..wish() };
         assert!(open.check(false).is_err() && open.check(true).is_ok());
-        assert!(PlatformWish { deployments: vec![], ..wish() }.check(false).is_err());
-        assert!(PlatformWish { hosts: vec!["a/b".to_owned()], ..wish() }.check(false).is_err());
-        assert!(PlatformWish { issuer: "a\nb".to_owned(), ..wish() }.check(false).is_err());
+        assert!(PlatformSettings { deployments: vec![], ..wish() }.check(false).is_err());
+        assert!(PlatformSettings { hosts: vec!["a/b".to_owned()], ..wish() }.check(false).is_err());
+        assert!(PlatformSettings { issuer: "a\nb".to_owned(), ..wish() }.check(false).is_err());
     }
 
     #[test]
     fn services_are_on_hosts_that_an_administrator_named() {
         let platform = Platform { id: 1, name: "lms".to_owned(), settings: wish() };
-        let may = |text: &str| platform.service(text, false).is_some();
+        let may = |text: &str| platform.service_address(text, false).is_some();
         assert!(may("https://lms.example.org/lineitems/1?type=2"));
         assert!(may("https://tokens.example.org/x") && may("https://grades.example.org:8443/x"));
         for address in [

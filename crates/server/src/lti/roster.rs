@@ -1,8 +1,8 @@
 //! The members of a platform's course, as the platform lists them (NRPS 2).
 use super::{
     Client, LtiPerson, Platform, ServiceFault,
-    client::{Ask, scope},
-    message::{name_of, role_of},
+    client::{ServiceRequest, scope},
+    message::{find_role, join_name},
 };
 use crate::db::Database;
 use serde::Deserialize;
@@ -47,16 +47,16 @@ pub async fn fetch(
     let mut next = Some(address.to_owned());
     for _ in 0..MAX_PAGES {
         let Some(address) = next else { return Ok(members) };
-        let ask = Ask { address, accept: MEDIA_TYPE, body: None };
-        let told = client.call(database, platform, scope::MEMBERS_SCOPE, &ask).await?;
-        let page: RosterPage = told.read("its members")?;
+        let request = ServiceRequest { address, accept: MEDIA_TYPE, body: None };
+        let answer = client.call(database, platform, scope::MEMBERS_SCOPE, &request).await?;
+        let page: RosterPage = answer.read("the list of members")?;
         members.extend(page.members.into_iter().filter_map(to_person));
         if members.len() > MAX_MEMBERS {
             break;
         }
-        next = told.link.as_deref().and_then(next_page);
+        next = answer.link.as_deref().and_then(next_page);
     }
-    Err(ServiceFault::Refused(format!("its list of members is longer than {MAX_PAGES} pages or {MAX_MEMBERS} members")))
+    Err(ServiceFault::Rejected(format!("the roster is longer than {MAX_PAGES} pages or {MAX_MEMBERS} members")))
 }
 
 fn to_person(member: Member) -> Option<LtiPerson> {
@@ -66,9 +66,9 @@ fn to_person(member: Member) -> Option<LtiPerson> {
     let is_active = member.status.as_deref().is_none_or(|status| status == "Active");
     Some(LtiPerson {
         subject: member.user_id,
-        name: name_of(member.name, [member.given_name, member.family_name]),
+        name: join_name(member.name, [member.given_name, member.family_name]),
         email: member.email,
-        role: role_of(&member.roles).filter(|_| is_active),
+        role: find_role(&member.roles).filter(|_| is_active),
     })
 }
 

@@ -7,18 +7,18 @@
 use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
-    late::Lateness,
+    late_policy::Lateness,
     queue::{self, Lane, NewJob, Turn},
-    shown::ShownGrade,
     task::round_points,
     values,
+    visible_grade::VisibleGrade,
 };
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 /// The task of a job that sends a score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Order {
+pub(super) struct ScoreOrder {
     /// The number of the platform's link in the database.
     pub(super) link: i64,
     /// The number of the student's account.
@@ -48,13 +48,13 @@ macro_rules! orders {
 }
 
 /// Enqueues the score of a submission's owner for the platforms, because the submission's counting result has changed.
-pub(crate) async fn note_change(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
+pub(crate) async fn queue_changed_scores(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
     let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
 /// Enqueues the scores of all submissions in a regrade, because the regrade's results count from now on.
-pub(crate) async fn note_regrade(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+pub(crate) async fn queue_regraded_scores(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
     let rows = transaction.rows(statement, values![campaign]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
@@ -68,7 +68,7 @@ pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, aga
 }
 
 /// Enqueues the score of an account for the link by which the person just arrived.
-pub(crate) async fn note_arrival(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
+pub(crate) async fn queue_arrival_score(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
     let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
@@ -76,7 +76,7 @@ pub(crate) async fn note_arrival(transaction: &mut Transaction, link: i64, accou
 
 async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Result<usize, DbError> {
     for row in rows {
-        let order = Order { link: row.int("link")?, account: row.int("account")?, again };
+        let order = ScoreOrder { link: row.int("link")?, account: row.int("account")?, again };
         let turn = Turn::Score(order.link, order.account);
         if !again && queue::is_waiting(transaction, turn).await? {
             continue;
@@ -90,8 +90,8 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
 
 /// A score that is ready to be sent.
 #[derive(Debug, Clone)]
-pub(super) struct Parcel {
-    pub(super) order: Order,
+pub(super) struct PreparedScore {
+    pub(super) order: ScoreOrder,
     pub(super) platform: Platform,
     /// The platform's identifier of the person.
     pub(super) subject: String,
@@ -108,7 +108,10 @@ pub(super) struct Parcel {
 }
 
 /// Returns the score to send for an order, with its time; `None` if there is nothing to send.
-pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
+pub(super) async fn prepare(
+    transaction: &mut Transaction,
+    order: ScoreOrder,
+) -> Result<Option<PreparedScore>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
            platform_link.line_items, platform_link.resource, platform_link.assignment, assignment.slug,
@@ -144,7 +147,7 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
         }
     };
     let row = &row;
-    Ok(Some(read_row!(row => Parcel {
+    Ok(Some(read_row!(row => PreparedScore {
         subject, line_item, line_items, resource, slug, title;
         platform: Platform::from_row(row)?,
         order,
@@ -168,13 +171,13 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
         WHERE submission.assignment = ? AND submission.account = ? ORDER BY submission.id";
     let rows = transaction.rows(statement, values![assignment, account]).await?;
     let mut best: Option<(f64, f64)> = None;
-    let mut waits = false;
+    let mut is_waiting = false;
     for row in &rows {
         let state = row.maybe_text("state")?.unwrap_or_default();
-        waits |= matches!(state.as_str(), "waiting" | "running");
+        is_waiting |= matches!(state.as_str(), "waiting" | "running");
         let withheld = row.maybe_text("shown")?.filter(|_| row.maybe_int("published_at").is_ok_and(|at| at.is_none()));
-        let (points, most) = match withheld.as_deref().and_then(ShownGrade::read) {
-            Some(shown) => shown.points(),
+        let (points, most) = match withheld.as_deref().and_then(VisibleGrade::from_text) {
+            Some(shown) => shown.into_points(),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
         let late = Lateness::from_row(row)?;
@@ -197,41 +200,41 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
             "activityProgress": "Completed", "gradingProgress": "FullyGraded",
         })),
         None => {
-            let grading = if waits { "Pending" } else { "PendingManual" };
+            let grading = if is_waiting { "Pending" } else { "PendingManual" };
             Some(json!({"activityProgress": "Submitted", "gradingProgress": grading}))
         }
     })
 }
 
-/// Records that a platform has received the score, unless there is a newer score.
-pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
+/// Records that a platform has received the score. If there is a newer score, nothing is recorded.
+pub(super) async fn record_sent(transaction: &mut Transaction, score: &PreparedScore) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
-    transaction.execute(statement, values![parcel.order.link, parcel.order.account, parcel.stamp]).await?;
-    let score = &parcel.content;
-    let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
+    transaction.execute(statement, values![score.order.link, score.order.account, score.stamp]).await?;
+    let content = &score.content;
+    let what = match (content["scoreGiven"].as_f64(), content["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} of {} points", round_points(points), round_points(most)),
-        _ => score["gradingProgress"].as_str().unwrap_or_default().to_owned(),
+        _ => content["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
-    note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await
+    log_event(transaction, score.order, "score sent", &format!("{what}, to {}", score.platform.name)).await
 }
 
 /// Records the reason why a platform rejected a score. Staff see it.
-pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
+pub(super) async fn store_fault(transaction: &mut Transaction, order: ScoreOrder, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
 /// Records that a job was tried too often. Returns whether the job was to send a score.
-pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
-    let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
-    note_rejection(transaction, order, fault).await?;
-    note(transaction, order, "score not sent", fault).await?;
+pub(crate) async fn record_failure(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
+    let Ok(order) = serde_json::from_str::<ScoreOrder>(payload) else { return Ok(false) };
+    store_fault(transaction, order, fault).await?;
+    log_event(transaction, order, "score not sent", fault).await?;
     Ok(true)
 }
 
 /// Writes an entry about a score into the course's audit log.
-async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &str) -> Result<(), DbError> {
+async fn log_event(transaction: &mut Transaction, order: ScoreOrder, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, text)
         SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
         FROM platform_link JOIN assignment ON assignment.id = platform_link.assignment
@@ -250,8 +253,7 @@ pub(super) enum ColumnState {
     Claimed,
 }
 
-/// Returns what is known about a link's column. A caller that receives [`ColumnState::Unclaimed`] must create the
-/// column soon.
+/// Returns the state of a link's column. A caller that receives [`ColumnState::Unclaimed`] must create the column soon.
 pub(super) async fn find_column(
     transaction: &mut Transaction,
     link: i64,

@@ -1,8 +1,8 @@
 //! Sends scores to platforms. Each score is a job in a separate lane, and the server itself runs these jobs.
 use super::{
     Lti, ServiceFault,
-    client::{Ask, scope},
-    score::{self, ColumnState, Order, Parcel},
+    client::{ServiceRequest, scope},
+    score::{self, ColumnState, PreparedScore, ScoreOrder},
 };
 use crate::{
     calendar,
@@ -46,21 +46,21 @@ const POLL_INTERVAL: Duration = Duration::from_millis(250);
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
 /// Sends scores until `stop` is canceled. If recording a sent score fails, it is sent again, which changes nothing.
-/// Before each claim, `look` is called, so that jobs of servers that stopped responding are found.
+/// Before each claim, `tick` is called, so that jobs of servers that stopped responding are found.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
     policy: QueuePolicy,
     lti: Arc<Lti>,
-    look: impl Fn() -> F,
+    tick: impl Fn() -> F,
     stop: CancellationToken,
 ) {
-    let room = Arc::new(Semaphore::new(MAX_PARALLEL));
+    let permits = Arc::new(Semaphore::new(MAX_PARALLEL));
     let mut subscription = notifier.subscribe();
     while !stop.is_cancelled() {
         tokio::select! {
             () = stop.cancelled() => return,
-            taken = take(&database, &policy, &room, &look) => match taken {
+            taken = take_job(&database, &policy, &permits, &tick) => match taken {
                 Ok(Some((claim, place))) => {
                     let (database, lti) = (database.clone(), lti.clone());
                     tokio::spawn(async move {
@@ -83,31 +83,31 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
 }
 
 /// Claims the next job. Also returns a permit, which limits the number of jobs that run in parallel.
-async fn take<F: Future<Output = Result<(), DbError>>>(
+async fn take_job<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
     policy: &QueuePolicy,
     room: &Arc<Semaphore>,
-    look: impl Fn() -> F,
+    tick: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
     // A server without platforms needs no write transactions here.
     if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
         return Ok(None);
     }
-    let place = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
-    look().await?;
+    let permit = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
+    tick().await?;
     let mut transaction = database.begin().await?;
     let claim = queue::claim(&mut transaction, policy, Lane::Passback, CLAIMANT).await?;
     transaction.commit().await?;
-    Ok(claim.map(|claim| (claim, place)))
+    Ok(claim.map(|claim| (claim, permit)))
 }
 
 async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
     let sending = send(database, lti, claim);
     tokio::pin!(sending);
-    let sent = loop {
+    let result = loop {
         tokio::select! {
             sent = &mut sending => break sent,
-            () = tokio::time::sleep(policy.renew_every()) => {
+            () = tokio::time::sleep(policy.renewal_interval()) => {
                 let mut transaction = database.begin().await?;
                 queue::renew(&mut transaction, policy, &claim.lease, None, MAX_DURATION).await?;
                 transaction.commit().await?;
@@ -115,29 +115,29 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
         }
     };
     let mut transaction = database.begin().await?;
-    match sent {
+    match result {
         Ok(parcel) => {
             // If the lease was lost, the next sender sends the same score with the same time, which changes nothing.
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {
-                score::note_sent(&mut transaction, &parcel).await?;
+                score::record_sent(&mut transaction, &parcel).await?;
             }
         }
         Err(fault) => {
             let text = fault.to_string();
             tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
             let (tries, least) = match &fault {
-                ServiceFault::Away { after, .. } => (MAX_OUTAGE_TRIES, after.unwrap_or_default()),
-                ServiceFault::Refused(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
+                ServiceFault::Unavailable { after, .. } => (MAX_OUTAGE_TRIES, after.unwrap_or_default()),
+                ServiceFault::Rejected(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
             };
-            let patient = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
-            let failure = queue::fail(&mut transaction, &patient, &claim.lease, &text, least).await?;
-            match (failure, serde_json::from_str::<Order>(&claim.payload)) {
+            let patient_policy = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
+            let failure = queue::fail(&mut transaction, &patient_policy, &claim.lease, &text, least).await?;
+            match (failure, serde_json::from_str::<ScoreOrder>(&claim.payload)) {
                 (Failure::Buried, _) => {
-                    score::give_up(&mut transaction, &claim.payload, &text).await?;
+                    score::record_failure(&mut transaction, &claim.payload, &text).await?;
                 }
-                (Failure::Retried, Ok(order)) => score::note_rejection(&mut transaction, order, &text).await?,
+                (Failure::Retried, Ok(order)) => score::store_fault(&mut transaction, order, &text).await?,
                 _ => {}
             }
         }
@@ -146,13 +146,13 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
 }
 
 /// Sends the score of a claimed job and returns it; `None` if there is no score to send.
-async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Parcel>, ServiceFault> {
-    let order: Order = serde_json::from_str(&claim.payload)
-        .map_err(|error| ServiceFault::Refused(format!("the job can't be read: {error}")))?;
+async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<PreparedScore>, ServiceFault> {
+    let order: ScoreOrder = serde_json::from_str(&claim.payload)
+        .map_err(|error| ServiceFault::Rejected(format!("the job can't be read: {error}")))?;
     let mut transaction = database.begin().await?;
-    let parcel = score::prepare(&mut transaction, order).await?;
+    let score = score::prepare(&mut transaction, order).await?;
     transaction.commit().await?;
-    let Some(parcel) = parcel else { return Ok(None) };
+    let Some(parcel) = score else { return Ok(None) };
     let line_item = match &parcel.line_item {
         Some(line_item) => line_item.clone(),
         None => line_item(database, lti, &parcel).await?,
@@ -160,25 +160,25 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     let mut body = parcel.content.clone();
     body["userId"] = json!(parcel.subject);
     body["timestamp"] = json!(calendar::format_iso(parcel.stamp));
-    let ask = Ask {
-        address: scores(&line_item)?,
+    let request = ServiceRequest {
+        address: scores_address(&line_item)?,
         accept: "application/json",
         body: Some(("application/vnd.ims.lis.v1.score+json", body.to_string().into_bytes())),
     };
-    match lti.client.call(database, &parcel.platform, scope::SCORE_SCOPE, &ask).await {
+    match lti.client.call(database, &parcel.platform, scope::SCORE_SCOPE, &request).await {
         Ok(_) => Ok(Some(parcel)),
         // The platform already has a newer score (AGS 3.4.8).
-        Err(ServiceFault::Refused(said)) if said.starts_with("409") => Ok(Some(parcel)),
+        Err(ServiceFault::Rejected(said)) if said.starts_with("409") => Ok(Some(parcel)),
         Err(fault) => Err(fault),
     }
 }
 
 /// Returns the address to which a column's scores are sent: the column's address with `/scores` at the end of the path
 /// (AGS 3.4).
-fn scores(line_item: &str) -> Result<String, ServiceFault> {
-    let wrong = || ServiceFault::Refused("the address of its grade book's column is invalid".to_owned());
-    let mut url = Url::parse(line_item).map_err(|_| wrong())?;
-    url.path_segments_mut().map_err(|()| wrong())?.pop_if_empty().push("scores");
+fn scores_address(line_item: &str) -> Result<String, ServiceFault> {
+    let invalid = || ServiceFault::Rejected("the address of the grade book's column is invalid".to_owned());
+    let mut url = Url::parse(line_item).map_err(|_| invalid())?;
+    url.path_segments_mut().map_err(|()| invalid())?.pop_if_empty().push("scores");
     Ok(url.into())
 }
 
@@ -190,11 +190,11 @@ struct LineItem {
 }
 
 /// Returns the column for a link without a known column. One caller finds or creates it while the others wait.
-async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
-    let Some(container) = &parcel.line_items else {
-        return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));
+async fn line_item(database: &Database, lti: &Lti, score: &PreparedScore) -> Result<String, ServiceFault> {
+    let Some(container) = &score.line_items else {
+        return Err(ServiceFault::Rejected("the platform's grade book has no column for this link".to_owned()));
     };
-    let link = parcel.order.link;
+    let link = score.order.link;
     for _ in 0..MAX_POLLS {
         let mut transaction = database.begin().await?;
         let column = score::find_column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
@@ -203,45 +203,46 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
             ColumnState::Known(address) => return Ok(address),
             ColumnState::Claimed => tokio::time::sleep(POLL_INTERVAL).await,
             ColumnState::Unclaimed => {
-                let made = find_or_make(database, lti, parcel, container).await;
+                let column = find_or_create(database, lti, score, container).await;
                 let mut transaction = database.begin().await?;
-                score::keep_column(&mut transaction, link, made.as_deref().ok()).await?;
+                score::keep_column(&mut transaction, link, column.as_deref().ok()).await?;
                 transaction.commit().await?;
-                return made;
+                return column;
             }
         }
     }
-    Err(ServiceFault::Away { why: "the column of its grade book is still being created".to_owned(), after: None })
+    Err(ServiceFault::Unavailable { reason: "the grade book's column is still being created".to_owned(), after: None })
 }
 
 /// Finds the column of a link on a platform, or creates it (AGS 3.2).
-async fn find_or_make(
+async fn find_or_create(
     database: &Database,
     lti: &Lti,
-    parcel: &Parcel,
+    score: &PreparedScore,
     container: &str,
 ) -> Result<String, ServiceFault> {
-    let wrong = |error| ServiceFault::Refused(format!("its columns can't be read: {error}"));
-    let mut url = Url::parse(container).map_err(wrong)?;
-    url.query_pairs_mut().append_pair("resource_link_id", &parcel.resource);
-    let ask = Ask { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
-    let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
-    let found: Vec<LineItem> = told.read("its columns")?;
-    if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&parcel.resource)) {
+    let unreadable = |error| ServiceFault::Rejected(format!("the grade book's columns can't be read: {error}"));
+    let mut url = Url::parse(container).map_err(unreadable)?;
+    url.query_pairs_mut().append_pair("resource_link_id", &score.resource);
+    let request =
+        ServiceRequest { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
+    let answer = lti.client.call(database, &score.platform, scope::LINE_ITEM, &request).await?;
+    let found: Vec<LineItem> = answer.read("the list of columns")?;
+    if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&score.resource)) {
         return Ok(item.id);
     }
-    let most = parcel.content["scoreMaximum"].as_f64().unwrap_or(100.0);
+    let most = score.content["scoreMaximum"].as_f64().unwrap_or(100.0);
     let item = json!({
-        "scoreMaximum": most, "label": parcel.title, "resourceId": parcel.slug, "resourceLinkId": parcel.resource,
+        "scoreMaximum": most, "label": score.title, "resourceId": score.slug, "resourceLinkId": score.resource,
     });
     const LINE_ITEM_TYPE: &str = "application/vnd.ims.lis.v2.lineitem+json";
-    let ask = Ask {
+    let request = ServiceRequest {
         address: container.to_owned(),
         accept: LINE_ITEM_TYPE,
         body: Some((LINE_ITEM_TYPE, item.to_string().into_bytes())),
     };
-    let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
-    Ok(told.read::<LineItem>("its columns")?.id)
+    let answer = lti.client.call(database, &score.platform, scope::LINE_ITEM, &request).await?;
+    Ok(answer.read::<LineItem>("the new column")?.id)
 }
 
 #[cfg(test)]
@@ -253,8 +254,8 @@ mod tests {
             ("https://a/lineitems/1/", "https://a/lineitems/1/scores"),
             ("https://a/1/lineitem?type_id=2", "https://a/1/lineitem/scores?type_id=2"),
         ] {
-            assert_eq!(super::scores(line_item).expect("an address"), scores);
+            assert_eq!(super::scores_address(line_item).expect("an address"), scores);
         }
-        assert!(super::scores("mailto:somebody").is_err());
+        assert!(super::scores_address("mailto:somebody").is_err());
     }
 }

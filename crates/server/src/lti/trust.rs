@@ -63,22 +63,22 @@ impl Trust {
 
     /// Returns the platform's key that is called `kid`.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
-        let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
+        let find_key = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.find_keys(platform);
         if let Some(known) = &known {
             if known.read_at.is_some_and(|at| at.elapsed() < KEY_LIFETIME)
-                && let Some(key) = named(known)
+                && let Some(key) = find_key(known)
             {
                 return Ok(key);
             }
             if known.asked_at.elapsed() < MIN_PAUSE {
-                return named(known).ok_or(Rejection::UnknownKey);
+                return find_key(known).ok_or(Rejection::UnknownKey);
             }
         }
-        let asked = client.get(platform, &platform.settings.keys_url).await;
-        let keys = asked.and_then(|answer| answer.read("its keys").map(usable_keys));
+        let answer = client.get(platform, &platform.settings.keys_url).await;
+        let keys = answer.and_then(|answer| answer.read("the platform's keys").map(usable_keys));
         let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
-        let newly = match keys {
+        let updated = match keys {
             Ok(keys) => KnownKeys { address, keys, read_at: Some(now), asked_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
@@ -87,10 +87,10 @@ impl Trust {
                 KnownKeys { asked_at: now, ..before.unwrap_or_else(none) }
             }
         };
-        let found = named(&newly);
-        let away = newly.read_at.is_none();
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(platform.id, newly);
-        found.ok_or(if away { Rejection::NoKeys } else { Rejection::UnknownKey })
+        let found = find_key(&updated);
+        let unreachable = updated.read_at.is_none();
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(platform.id, updated);
+        found.ok_or(if unreachable { Rejection::NoKeys } else { Rejection::UnknownKey })
     }
 }
 

@@ -47,8 +47,8 @@ impl Turn {
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
-        let own = last.int("now")? + self.delay_millis();
-        Ok(last.maybe_int("last")?.map_or(own, |last| own.max(last + self.spacing_millis())))
+        let earliest = last.int("now")? + self.delay_millis();
+        Ok(last.maybe_int("last")?.map_or(earliest, |last| earliest.max(last + self.spacing_millis())))
     }
 
     pub(crate) fn key(self) -> String {

@@ -11,16 +11,16 @@
 
 mod claim;
 mod enqueue;
-mod hold;
+mod lease;
 mod notifier;
-mod place;
+mod queue_position;
 mod tick;
 
 pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, enqueue, is_waiting};
-pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
+pub use lease::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
-pub use place::{Place, queue_place};
+pub use queue_position::{QueuePosition, find_queue_position};
 pub use tick::{BuriedJob, Tick, tick};
 
 use crate::secret;
@@ -76,18 +76,18 @@ impl Default for QueuePolicy {
 
 impl QueuePolicy {
     /// Returns the time between two renewals of a lease. It is short enough that two renewals in a row may get lost.
-    pub fn renew_every(&self) -> Duration {
+    pub fn renewal_interval(&self) -> Duration {
         self.lease / 4
     }
 
     /// Returns the time between two searches for expired leases.
-    pub fn tick_every(&self) -> Duration {
+    pub fn tick_interval(&self) -> Duration {
         self.lease / 8
     }
 
     /// Returns the minimum gap between two searches for expired leases after which the database counts as having been
     /// unavailable. During such a gap, workers could not renew their leases.
-    fn outage(&self) -> Duration {
+    fn outage_gap(&self) -> Duration {
         self.lease / 2
     }
 

@@ -3,7 +3,7 @@
 //! Every live process ticks, and leases expire only while a process ticks. A gap between ticks means that the database
 //! was unavailable, so that no worker could renew its lease. All leases then start again. Therefore a restart of
 //! PostgreSQL does not count as a failure of any job.
-use super::{Failure, QueuePolicy, hold::give_up_worker, millis};
+use super::{Failure, QueuePolicy, lease::give_up_worker, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -37,7 +37,7 @@ pub struct BuriedJob {
     pub fault: String,
 }
 
-/// Ends the leases of workers that stopped responding. This happens at most once per [`QueuePolicy::tick_every`], no
+/// Ends the leases of workers that stopped responding. This happens at most once per [`QueuePolicy::tick_interval`], no
 /// matter how many processes call it.
 ///
 /// # Errors
@@ -49,12 +49,12 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     // Another process is searching at the moment.
     let Some(pulse) = pulse else { return Ok(Tick::default()) };
     let (beat, now) = (pulse.int("beat_at")?, pulse.int("now")?);
-    if (0..millis(policy.tick_every())).contains(&(now - beat)) {
+    if (0..millis(policy.tick_interval())).contains(&(now - beat)) {
         return Ok(Tick::default());
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
     // If the clock was set back, or far ahead, that also counts as an outage.
-    if now < beat || now - beat > millis(policy.outage()) {
+    if now < beat || now - beat > millis(policy.outage_gap()) {
         let statement = "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
             UPDATE job SET lease_until = {now} + ?, started_at = {now}
             WHERE id IN (SELECT id FROM held) AND state = 'running'";
@@ -64,10 +64,10 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     let statement = "SELECT id, attempt, failures, deaths, worker FROM job
         WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}";
     let lost = transaction.rows(statement, values![]).await?;
-    give_up(transaction, policy, lost).await
+    give_up_workers(transaction, policy, lost).await
 }
 
-async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<Row>) -> Result<Tick, DbError> {
+async fn give_up_workers(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<Row>) -> Result<Tick, DbError> {
     let mut tick = Tick::default();
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);

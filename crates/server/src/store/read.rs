@@ -56,11 +56,11 @@ impl Store {
             }
             Ok(output.flush().await?)
         };
-        let copied = copying.await;
-        if copied.is_err() {
+        let result = copying.await;
+        if result.is_err() {
             drop(tokio::fs::remove_file(file).await);
         }
-        copied
+        result
     }
 }
 

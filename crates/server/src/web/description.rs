@@ -1,6 +1,6 @@
 //! The description of the API (OpenAPI 3.1). It combines the handlers' own descriptions with everything that they have
 //! in common.
-use super::who::cookie_name;
+use super::identification::cookie_name;
 use crate::{
     problem::Problem,
     schema::{Digest, FileName, Slug},
@@ -40,7 +40,7 @@ const MAX_INTEGER: i64 = (1 << 53) - 1;
         (name = "assignments", description = "Assignments, and a class's results"),
         (name = "submissions", description = "Submissions and their grades"),
         (name = "regrades", description = "Grading all submissions again"),
-        (name = "administration", description = "What administrators do"),
+        (name = "administration", description = "Actions of administrators"),
         (name = "workers", description = "The API for workers on other machines, with a worker's token"),
         (name = "operations", description = "For monitors of the server; without a sign-in")
     )
@@ -178,7 +178,7 @@ fn complete_parameter(parameter: &mut Parameter) {
         (ParameterIn::Path, "assignment") => (named("Slug"), "The assignment's name in addresses"),
         (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
-        (ParameterIn::Path, "name") => (named("Slug"), "Its name"),
+        (ParameterIn::Path, "name") => (named("Slug"), "The object's name"),
         (ParameterIn::Path, "id") => (number_schema(1), "The number"),
         (ParameterIn::Query, "before") => (number_schema(0), "Only entries before this one"),
         (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
@@ -214,7 +214,7 @@ fn describe_answer(status: &str) -> String {
     let reason = status.parse().ok().and_then(|status| StatusCode::from_u16(status).ok()?.canonical_reason());
     match reason {
         Some("OK") => "The requested data".to_owned(),
-        Some("Created") => "What was made".to_owned(),
+        Some("Created") => "The created object".to_owned(),
         reason => reason.unwrap_or("An answer").to_owned(),
     }
 }

@@ -12,14 +12,13 @@ use axum::{
 use futures_util::TryStreamExt;
 
 /// Sends an artifact, unless the request's headers show that the client already has it.
-pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
+pub(super) async fn send(member: &Member, headers: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
     let tag = format!("\"{}\"", artifact.digest);
-    let names_it =
-        |tags: &str| tags == "*" || tags.split(',').any(|other| other.trim().trim_start_matches("W/") == tag);
-    let known = asked.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(names_it);
+    let is_same = |tags: &str| tags == "*" || tags.split(',').any(|other| other.trim().trim_start_matches("W/") == tag);
+    let is_known = headers.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(is_same);
     let unchanged = || StatusCode::NOT_MODIFIED.into_response();
-    let mut response = if known { unchanged() } else { whole_answer(member.open(artifact).await?, Some(transfer)) };
+    let mut response = if is_known { unchanged() } else { whole_answer(member.open(artifact).await?, Some(transfer)) };
     insert(&mut response, header::ETAG, &tag);
     Ok(response)
 }

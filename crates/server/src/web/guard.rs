@@ -1,5 +1,5 @@
 //! Rules for every request: which sites may send it, the headers of its answer, and its entry in the log.
-use super::{input::ArrivalTime, who};
+use super::{identification, input::ArrivalTime};
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
@@ -26,15 +26,17 @@ const CONNECT_ADDRESS: &str = "/account/provider";
 /// with a token are accepted. All other requests that change something must come from this site. The browser confirms
 /// this in the header `Sec-Fetch-Site` (older browsers use `Origin`).
 pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
-    if (is_harmless(request.method()) && request.uri().path() != CONNECT_ADDRESS)
+    if (is_safe_method(request.method()) && request.uri().path() != CONNECT_ADDRESS)
         || PLATFORM_ADDRESSES.contains(&request.uri().path())
-        || who::secrets(request.headers(), app.is_secure()).bearer.is_some()
-        || is_own(request.headers(), &app)
+        || identification::secrets(request.headers(), app.is_secure()).bearer.is_some()
+        || is_same_site(request.headers(), &app)
     {
         return next.run(request).await;
     }
     // A request without any of these headers comes from a program, which needs a token.
-    if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
+    if request.uri().path().starts_with("/api/")
+        && identification::secrets(request.headers(), app.is_secure()).session.is_none()
+    {
         return Problem::not_signed_in().into_response();
     }
     Problem::cross_site().into_response()
@@ -42,7 +44,7 @@ pub(super) async fn check_site(State(app): State<App>, request: Request, next: N
 
 /// Sends a session's cookie again if the session was extended.
 pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, next: Next) -> Response {
-    let renewed = who::RenewedSession::default();
+    let renewed = identification::RenewedSession::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
@@ -58,16 +60,16 @@ pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, n
 pub(super) const SESSION_SECONDS: u32 = 1_209_600;
 
 /// Returns the cookie for a session, with a lifetime in seconds.
-pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
-    let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
-    format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lasts}{secure}")
+pub(super) fn session_cookie(app: &App, session: &str, lifetime: u32) -> String {
+    let (name, secure) = (identification::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
+    format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lifetime}{secure}")
 }
 
-fn is_harmless(method: &Method) -> bool {
+fn is_safe_method(method: &Method) -> bool {
     matches!(*method, Method::GET | Method::HEAD | Method::OPTIONS)
 }
 
-fn is_own(headers: &HeaderMap, app: &App) -> bool {
+fn is_same_site(headers: &HeaderMap, app: &App) -> bool {
     let text = |name: HeaderName| headers.get(name).and_then(|value| value.to_str().ok());
     if let Some(site) = text(HeaderName::from_static("sec-fetch-site")) {
         return matches!(site, "same-origin" | "none");

@@ -42,8 +42,8 @@ pub(super) struct QueryInput<T>(pub(super) T);
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The number of the newest event of the audit log that the sender has seen. If what the request changes was
-    /// changed after it, the request is rejected. Without this parameter, it is not checked.
+    /// The number of the newest event of the audit log that the sender has seen. If the object of the request was
+    /// changed after that event, the request is rejected. Without this parameter, it is not checked.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
@@ -55,7 +55,7 @@ impl SeenEvent {
     }
 }
 
-/// The query parameter that says where a list begins.
+/// The query parameter for the beginning of a list.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ListStart {
@@ -63,11 +63,11 @@ pub(super) struct ListStart {
     pub(super) after: Option<i64>,
 }
 
-/// Rejects a request whose body has another media type than `wanted`.
-fn check_type(headers: &HeaderMap, wanted: &str, otherwise: &str) -> Result<(), Problem> {
+/// Rejects a request if the media type of its body is not `media_type`.
+fn check_type(headers: &HeaderMap, media_type: &str, message: &str) -> Result<(), Problem> {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
-    let is_wanted = value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted));
-    ensure(is_wanted, Problem::invalid(otherwise))
+    let is_expected = value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(media_type));
+    ensure(is_expected, Problem::invalid(message))
 }
 
 /// The time at which a request's head arrived.
@@ -111,14 +111,14 @@ fn fix_integers(value: &mut Value) {
     }
 }
 
-fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+fn parse_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let mut value = serde_json::from_slice(bytes).ok()?;
     fix_integers(&mut value);
     serde_json::from_value(value).ok()
 }
 
 /// Reads the fields of an object. Their types are checked later.
-pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+pub(super) fn read_whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
     fields.values_mut().for_each(fix_integers);
     Ok(fields)
@@ -131,7 +131,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
         check_type(request.headers(), "application/json", "the body must be JSON: Content-Type: application/json")?;
         let bytes = read_body(request, state).await?;
         let read = serde_json::from_slice(&bytes);
-        let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
+        let read = read.or_else(|error| parse_whole_numbers(&bytes).ok_or(error));
         read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
     }
 }
@@ -173,8 +173,8 @@ impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
         let found = Path::<Self>::from_request_parts(parts, state).await;
         // The text in the address is not a number.
         let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
-        let of_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
-        let what = if of_submission { "submission" } else { "page" };
+        let is_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
+        let what = if is_submission { "submission" } else { "page" };
         found.map(|Path(found)| found).map_err(|_| Problem::not_found(what))
     }
 }

@@ -1,17 +1,17 @@
 //! The HTTP server: the API, the pages, and rules for both.
 
 pub mod api;
+mod archive_check;
 mod description;
 mod download;
 mod guard;
+mod identification;
 mod input;
-mod look;
 pub mod pages;
-mod refusal;
+mod problem_response;
 mod upload;
-mod who;
 
-pub use upload::{look_through, receive_form};
+pub use upload::{check_archive, receive_form};
 
 use crate::domain::App;
 use axum::{Extension, Router, extract::DefaultBodyLimit, middleware};
@@ -47,12 +47,12 @@ pub fn router(app: App) -> Router {
     Router::new()
         .merge(api)
         .merge(pages)
-        .fallback(pages::no_page)
+        .fallback(pages::missing_page)
         .method_not_allowed_fallback(pages::wrong_method)
         // Each function that reads a body enforces its own limit.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::check_site))
-        .layer(middleware::from_fn_with_state(app.clone(), pages::show_others))
+        .layer(middleware::from_fn_with_state(app.clone(), pages::show_other_problems))
         .layer(middleware::from_fn_with_state(app.clone(), guard::renew_cookie))
         .layer(middleware::from_fn_with_state(app.clone(), guard::add_headers))
         .layer(middleware::from_fn_with_state(app.clone(), guard::log_request))

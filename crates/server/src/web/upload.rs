@@ -27,10 +27,10 @@ use tokio::io::AsyncWriteExt;
 /// The maximum sum of all pauses in an upload, in multiples of the longest single pause.
 const MAX_PAUSES: u32 = 20;
 
-/// Returns the time within which an upload of `size` bytes must arrive to count as arrived when it began. The time is
-/// half a minute, and one more second for each 32 KiB. Without this limit, a student could begin an upload before the
-/// due date and write its content afterwards.
-pub(super) fn fair_time(size: u64) -> Duration {
+/// Returns the time within which an upload of `size` bytes must arrive. Then the time at which it began counts as its
+/// arrival. The limit is half a minute, and one more second for each 32 KiB. Without this limit, a student could begin
+/// an upload before the due date and write its content afterwards.
+pub(super) fn allowed_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
 
@@ -44,8 +44,8 @@ struct BufferedBytes(Arc<AtomicU64>);
 
 impl BufferedBytes {
     fn add(&self, bytes: usize) -> Result<(), &'static str> {
-        let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
-        if untaken > FORM_OVERHEAD { Err("the form has too many fields") } else { Ok(()) }
+        let buffered = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
+        if buffered > FORM_OVERHEAD { Err("the form has too many fields") } else { Ok(()) }
     }
 
     fn take(&self, bytes: usize) {
@@ -66,17 +66,17 @@ pub(super) struct ReceivedFile {
 }
 
 /// The folder in which uploads are received, and the longest pause that is allowed.
-struct Place<'a> {
+struct Inbox<'a> {
     incoming: &'a Path,
     patience: Duration,
 }
 
 /// Receives the body of a request. The body is the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
-    if let Err(problem) = app.ensure_room() {
+    if let Err(problem) = app.ensure_disk_space() {
         return Err(reject(app, request, most, problem).await);
     }
-    receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
+    receive_into(&Inbox { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
 /// Rejects an upload before anything is stored. The body is still read, because many programs read the answer only
@@ -117,7 +117,7 @@ pub async fn receive_form(
         .header(header::CONTENT_TYPE, "multipart/form-data; boundary=x")
         .body(Body::from_stream(futures_util::stream::iter(pieces)))
         .map_err(|_| Problem::fault())?;
-    let received = receive_at(&Place { incoming, patience: Duration::from_secs(60) }, request, most).await?;
+    let received = receive_into(&Inbox { incoming, patience: Duration::from_secs(60) }, request, most).await?;
     let size = std::fs::metadata(&received.file)?.len();
     Ok((size, [received.name, received.form, received.key]))
 }
@@ -133,36 +133,36 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
 
-async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
-    let deadline = Instant::now() + place.patience * MAX_PAUSES + fair_time(most);
+async fn receive_into(inbox: &Inbox<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
+    let deadline = Instant::now() + inbox.patience * MAX_PAUSES + allowed_time(most);
     if !is_form(&request) {
         ensure(announced_size(&request).is_none_or(|announced| announced <= most), Problem::too_large(most))?;
         let body: Body = request.into_body();
-        let file = write_file(place, body.into_data_stream(), most, deadline, None).await?;
+        let file = write_file(inbox, body.into_data_stream(), most, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
-    let untaken = BufferedBytes::default();
+    let buffered = BufferedBytes::default();
     let (parts, body) = request.into_parts();
-    let counting = untaken.clone();
+    let counter = buffered.clone();
     let counted = body.into_data_stream().map(move |chunk| {
         let chunk = chunk.map_err(|error| error.to_string())?;
-        counting.add(chunk.len()).map(|()| chunk).map_err(str::to_owned)
+        counter.add(chunk.len()).map(|()| chunk).map_err(str::to_owned)
     });
     let request = Request::from_parts(parts, Body::from_stream(counted));
     let mut multipart =
         Multipart::from_request(request, &()).await.map_err(|error| Problem::invalid(error.body_text()))?;
     let (mut file, mut name, mut form, mut key) = (None, None, None, None);
     loop {
-        let next = tokio::time::timeout(place.patience, multipart.next_field()).await;
+        let next = tokio::time::timeout(inbox.patience, multipart.next_field()).await;
         let field = next.map_err(|_| Problem::too_slow())?.map_err(|error| Problem::invalid(error.body_text()))?;
         let Some(field) = field else { break };
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(write_file(place, field, most, deadline, Some(&untaken)).await?);
+                file = Some(write_file(inbox, field, most, deadline, Some(&buffered)).await?);
             }
-            Some("form") => form = Some(short_text(place, field).await?),
-            Some("key") => key = Some(short_text(place, field).await?),
+            Some("form") => form = Some(short_text(inbox, field).await?),
+            Some("key") => key = Some(short_text(inbox, field).await?),
             _ => return Err(Problem::invalid("the form must have a field file, and may have form and key")),
         }
     }
@@ -175,10 +175,10 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
 }
 
 /// Reads a short text field of a form.
-async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
+async fn short_text(inbox: &Inbox<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     loop {
-        let chunk = tokio::time::timeout(place.patience, field.chunk()).await.map_err(|_| Problem::too_slow())?;
+        let chunk = tokio::time::timeout(inbox.patience, field.chunk()).await.map_err(|_| Problem::too_slow())?;
         match chunk.map_err(|error| Problem::invalid(error.body_text()))? {
             Some(chunk) if bytes.len() + chunk.len() <= 200 => bytes.extend_from_slice(&chunk),
             Some(_) => return Err(Problem::invalid("a field is longer than 200 bytes")),
@@ -189,19 +189,19 @@ async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Fiel
 
 /// Writes a stream into a new file in the folder for uploads.
 async fn write_file<E: Display>(
-    place: &Place<'_>,
+    inbox: &Inbox<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
     deadline: Instant,
-    untaken: Option<&BufferedBytes>,
+    buffered: Option<&BufferedBytes>,
 ) -> Result<TempPath, Problem> {
-    let (file, path) = tempfile::NamedTempFile::new_in(place.incoming)?.into_parts();
+    let (file, path) = tempfile::NamedTempFile::new_in(inbox.incoming)?.into_parts();
     let mut file = tokio::fs::File::from_std(file);
     let mut size = 0;
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
         ensure(left != Duration::ZERO, Problem::too_slow())?;
-        let next = tokio::time::timeout(left.min(place.patience), stream.next()).await;
+        let next = tokio::time::timeout(left.min(inbox.patience), stream.next()).await;
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
             Some(Err(error)) => {
@@ -209,7 +209,7 @@ async fn write_file<E: Display>(
                 return Err(Problem::invalid("the upload was interrupted"));
             }
             Some(Ok(chunk)) => {
-                if let Some(untaken) = untaken {
+                if let Some(untaken) = buffered {
                     untaken.take(chunk.len());
                 }
                 size += chunk.len() as u64;
@@ -237,13 +237,13 @@ pub(super) fn is_program(start: &[u8]) -> bool {
 }
 
 /// Returns the form of an archive, if the archive is valid. Sources must contain the file `program`, unless the suite
-/// builds it. This function runs in a separate process (`web::look`).
+/// builds it. This function runs in a separate process (`web::archive_check`).
 ///
 /// # Errors
 ///
 /// Fails if the archive is rejected. The error is the reason.
-pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
-    let said = said.and_then(Form::from_name);
+pub fn check_archive(file: &Path, form: Option<&str>, accepted: &str, program: Option<&str>) -> Result<Form, String> {
+    let form = form.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;
     match fosssim_intake::list_archive(opened, ArchiveLimits::DEFAULT) {
         Ok(files) if files.is_empty() => {
@@ -251,7 +251,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
         }
         Ok(files) => {
             let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
-            match (said, are_traces) {
+            match (form, are_traces) {
                 (Some(Form::Traces), false) => {
                     Err("an archive of traces may contain only files NAME.bin, one for a scene".to_owned())
                 }
@@ -260,7 +260,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
                 (said, _) => check_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
-        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("expected {wanted}, but found {found}")),
+        Err(ArchiveError::Unknown(found)) if form.is_none() => Err(format!("expected {accepted}, but found {found}")),
         Err(error) => Err(error.to_string()),
     }
 }

@@ -65,7 +65,7 @@ impl Child {
         let (started_sender, started) = std::sync::mpsc::channel();
         let (end_sender, end) = watch::channel(None);
         let group = Arc::new(Mutex::new(None));
-        let known = group.clone();
+        let shared_group = group.clone();
         // For the kernel, the parent is the thread that forked. Therefore that thread must outlive the child, and it
         // waits for it.
         std::thread::Builder::new().name("grader".to_owned()).spawn(move || {
@@ -74,10 +74,10 @@ impl Child {
                 Err(error) => return drop(started_sender.send(Err(error))),
             };
             let number = child.id().cast_signed();
-            *known.lock().unwrap_or_else(PoisonError::into_inner) = Some(number);
+            *shared_group.lock().unwrap_or_else(PoisonError::into_inner) = Some(number);
             drop(started_sender.send(Ok(())));
             wait_without_reaping(number);
-            let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
+            let mut known = shared_group.lock().unwrap_or_else(PoisonError::into_inner);
             *known = None;
             // SAFETY: the leader is not reaped yet, so the number still belongs to the group.
             unsafe { libc::kill(-number, libc::SIGKILL) };
@@ -104,7 +104,7 @@ impl Child {
         }
     }
 
-    /// Asks the child to stop, with a signal.
+    /// Requests the child to stop, with a signal.
     pub(super) fn interrupt(&self) {
         self.signal(libc::SIGTERM, false);
     }

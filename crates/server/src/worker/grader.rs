@@ -38,7 +38,7 @@ pub enum GraderFault {
     /// The grader failed; a retry may succeed.
     #[error("{0}")]
     Failed(String),
-    /// The grading was stopped because the worker asked for it.
+    /// The grading was stopped because the worker requested it.
     #[error("the grading was stopped")]
     Stopped,
 }
@@ -50,7 +50,7 @@ pub trait Grader: Clone + Send + Sync + 'static {
     /// # Errors
     ///
     /// Fails if the grader can't grade. The error is the reason, which only staff should see.
-    fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
+    fn check_ability(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
     /// Grades the file `submission`. If the suite is an archive, it is the file `suite`. The grader may write into
     /// `folder`. After `stop` is canceled, the grading ends soon, and so does everything that it started.

@@ -48,19 +48,19 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
                 libc::close(ready[0]);
                 Ok(())
             }
-            grader => watch(grader),
+            grader => wait_for_grader(grader),
         }
     }
 }
 
 /// Passes a signal on to the grader.
-extern "C" fn pass_on(signal: libc::c_int) {
+extern "C" fn forward_signal(signal: libc::c_int) {
     // SAFETY: kill may be called in a signal handler, and the grader is not reaped before the guard ends.
     unsafe { libc::kill(GRADER_PID.load(Ordering::Relaxed), signal) };
 }
 
 /// Waits for the grader, and then ends in the same way as the grader.
-unsafe fn watch(grader: libc::pid_t) -> ! {
+unsafe fn wait_for_grader(grader: libc::pid_t) -> ! {
     GRADER_PID.store(grader, Ordering::Relaxed);
     // SAFETY: these system calls use only numbers, and structures that were filled with zeros.
     unsafe {
@@ -70,7 +70,7 @@ unsafe fn watch(grader: libc::pid_t) -> ! {
             libc::signal(signal, libc::SIG_DFL);
         }
         let mut action: libc::sigaction = std::mem::zeroed();
-        action.sa_sigaction = pass_on as extern "C" fn(libc::c_int) as libc::sighandler_t;
+        action.sa_sigaction = forward_signal as extern "C" fn(libc::c_int) as libc::sighandler_t;
         libc::sigaction(libc::SIGTERM, &raw const action, std::ptr::null_mut());
         if libc::syscall(libc::SYS_close_range, 0, libc::c_uint::MAX, 0) != 0 {
             // Kernels before 5.9 do not have this call.

@@ -25,11 +25,11 @@ pub(super) struct Health<G> {
     pub(super) grader: G,
     /// The folder in which the folders for jobs and checks are created.
     pub(super) folder: PathBuf,
-    is_proven: Arc<AtomicBool>,
+    is_able: Arc<AtomicBool>,
     /// The lock of the slot that repeats checks until one succeeds. Other slots wait for this lock.
-    asking: Arc<Mutex<()>>,
+    retry_lock: Arc<Mutex<()>>,
     /// The lock that is held during a check.
-    proving: Arc<Mutex<()>>,
+    check_lock: Arc<Mutex<()>>,
     /// The reason why the last check failed; `None` if it succeeded.
     fault: Arc<std::sync::Mutex<Option<String>>>,
     /// Notifies waiting tasks when the worker becomes able or unable to grade.
@@ -42,9 +42,9 @@ impl<G: Grader> Health<G> {
         Self {
             grader,
             folder,
-            is_proven: Arc::default(),
-            asking: Arc::default(),
-            proving: Arc::default(),
+            is_able: Arc::default(),
+            retry_lock: Arc::default(),
+            check_lock: Arc::default(),
             fault: Arc::default(),
             change: Arc::default(),
         }
@@ -52,7 +52,7 @@ impl<G: Grader> Health<G> {
 
     /// Returns whether the last check succeeded, so that the worker may claim jobs.
     pub(super) fn is_proven(&self) -> bool {
-        self.is_proven.load(Ordering::Acquire)
+        self.is_able.load(Ordering::Acquire)
     }
 
     /// Returns the reason why the last check failed; `None` if it succeeded.
@@ -72,13 +72,13 @@ impl<G: Grader> Health<G> {
             return !stop.is_cancelled();
         }
         // One slot repeats checks, and the others wait.
-        let asking = tokio::select! {
-            asking = self.asking.lock() => asking,
+        let guard = tokio::select! {
+            asking = self.retry_lock.lock() => asking,
             () = stop.cancelled() => return false,
         };
         while !stop.is_cancelled() {
-            if self.is_proven() || self.prove(stop).await {
-                drop(asking);
+            if self.is_proven() || self.check(stop).await {
+                drop(guard);
                 return true;
             }
             tokio::select! {
@@ -91,28 +91,28 @@ impl<G: Grader> Health<G> {
     }
 
     /// Checks after a fault whether the worker can still grade. If it can, the job may be the cause of the fault.
-    pub(super) async fn check_after_fault(&self, stop: &CancellationToken) -> bool {
-        self.is_proven.store(false, Ordering::Release);
-        self.prove(stop).await
+    pub(super) async fn recheck_after_fault(&self, stop: &CancellationToken) -> bool {
+        self.is_able.store(false, Ordering::Release);
+        self.check(stop).await
     }
 
-    async fn prove(&self, stop: &CancellationToken) -> bool {
-        let _proving = self.proving.lock().await;
+    async fn check(&self, stop: &CancellationToken) -> bool {
+        let _proving = self.check_lock.lock().await;
         if self.is_proven() {
             return true;
         }
-        let proof = match job_folder(&self.folder) {
+        let result = match job_folder(&self.folder) {
             Err(error) => Err(format!("the working folder can't be created: {error}")),
-            Ok(folder) => self.grader.prove(folder.path(), stop.child_token()).await,
+            Ok(folder) => self.grader.check_ability(folder.path(), stop.child_token()).await,
         };
-        if proof.is_err() && stop.is_cancelled() {
+        if result.is_err() && stop.is_cancelled() {
             return false;
         }
-        if let Err(error) = &proof {
+        if let Err(error) = &result {
             tracing::error!(error, "this worker can't grade, and takes no jobs until it can");
         }
-        self.is_proven.store(proof.is_ok(), Ordering::Release);
-        *self.fault.lock().unwrap_or_else(PoisonError::into_inner) = proof.err();
+        self.is_able.store(result.is_ok(), Ordering::Release);
+        *self.fault.lock().unwrap_or_else(PoisonError::into_inner) = result.err();
         self.change.notify_one();
         self.is_proven()
     }

@@ -4,9 +4,9 @@ use crate::{
     db::{Database, DbError},
     health, ledger,
     queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Progress, QueuePolicy, Subscription},
-    shown::{self, KeptTexts},
     store::{Artifact, Digest, Store, StoreError},
     task::{Outcome, Task},
+    visible_grade::{self, StoredTexts},
     wire::{ClaimedJob, LeaseAnswer},
 };
 use std::{path::Path, time::Duration};
@@ -44,15 +44,15 @@ impl Clone for LocalSource {
 
 impl From<DbError> for SourceError {
     fn from(error: DbError) -> Self {
-        if error.is_transient() { Self::Away(error.to_string()) } else { Self::Refused(error.to_string()) }
+        if error.is_transient() { Self::Unavailable(error.to_string()) } else { Self::Rejected(error.to_string()) }
     }
 }
 
 impl From<StoreError> for SourceError {
     fn from(error: StoreError) -> Self {
         match error {
-            StoreError::Failed(_) => Self::Away(error.to_string()),
-            _ => Self::Refused(error.to_string()),
+            StoreError::Failed(_) => Self::Unavailable(error.to_string()),
+            _ => Self::Rejected(error.to_string()),
         }
     }
 }
@@ -104,7 +104,7 @@ impl JobSource for LocalSource {
             let Some(claim) = claim else { return Ok(None) };
             match serde_json::from_str(&claim.payload) {
                 Ok(task) => {
-                    let renew_every = self.policy.renew_every();
+                    let renew_every = self.policy.renewal_interval();
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
                     return Ok(Some(ClaimedJob { lease: claim.lease, renew_every, task }));
                 }
@@ -125,7 +125,7 @@ impl JobSource for LocalSource {
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
-        let held = match task {
+        let is_held = match task {
             Some(task) => {
                 let most = max_duration(&task, &self.policy);
                 queue::renew(&mut transaction, &self.policy, lease, progress, most).await?
@@ -133,16 +133,16 @@ impl JobSource for LocalSource {
             None => false,
         };
         transaction.commit().await?;
-        Ok(held.into())
+        Ok(is_held.into())
     }
 
     async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
         for file in &outcome.files {
             if !self.store.has(&file.artifact.digest).await? {
-                return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
+                return Err(SourceError::Rejected(format!("{} is not in the store", file.name)));
             }
         }
-        let KeptTexts { shown, failed, parts } = shown::read_texts(&self.store, &outcome.files).await?;
+        let StoredTexts { shown, failed, parts } = visible_grade::read_texts(&self.store, &outcome.files).await?;
         let outcome = Outcome { shown: Some(shown), failed, parts, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
@@ -152,9 +152,9 @@ impl JobSource for LocalSource {
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
         let mut transaction = self.database.begin().await?;
-        let held = queue::release(&mut transaction, lease).await?;
+        let is_held = queue::release(&mut transaction, lease).await?;
         self.notifier.commit(transaction).await?;
-        Ok(held.into())
+        Ok(is_held.into())
     }
 
     async fn fail(&self, lease: &Lease, fault: &str) -> Result<LeaseAnswer, SourceError> {
@@ -177,12 +177,12 @@ impl JobSource for LocalSource {
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let mut transaction = self.database.begin().await?;
-        health::note_sign_of_life(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
+        health::record_report(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
         transaction.commit().await?;
         Ok(ledger::tick(&self.database, &self.policy).await?)
     }
 
     fn tick_every(&self) -> Duration {
-        self.policy.tick_every()
+        self.policy.tick_interval()
     }
 }

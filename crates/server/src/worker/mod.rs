@@ -2,12 +2,12 @@
 //! no data about courses or students.
 
 mod child;
+mod grade_reader;
 mod grader;
 mod guard;
 mod health;
 mod local;
 mod program;
-mod reading;
 mod remote;
 mod slots;
 mod source;

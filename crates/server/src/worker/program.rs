@@ -3,7 +3,7 @@
 use super::{
     Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE,
     child::{Child, End},
-    reading,
+    grade_reader,
 };
 use crate::{
     store::digest_of_file,
@@ -107,7 +107,7 @@ const CHECK_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl Program {
     /// Runs the grader as a step of a check, and returns its exit code.
-    async fn step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
+    async fn run_step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
         let messages = folder.join("messages.txt");
         let mut command = Command::new(&self.path);
         command.args(arguments);
@@ -140,15 +140,15 @@ impl Program {
         code: i32,
         stop: &CancellationToken,
     ) -> Result<(), String> {
-        let grade = folder.join("proof.json");
-        let format = format!("json={}", grade.display());
+        let grade_file = folder.join("proof.json");
+        let format = format!("json={}", grade_file.display());
         let arguments = [&["grade"], submission, &["--scene", CHECK_SCENE, "--format", &format]].concat();
-        let ended = self.step(folder, &arguments, stop).await?;
-        if ended != code {
-            let said = last_output(&folder.join("messages.txt"));
-            return Err(format!("grading an example ended with exit code {ended}, not {code}: {said}"));
+        let exit_code = self.run_step(folder, &arguments, stop).await?;
+        if exit_code != code {
+            let message = last_output(&folder.join("messages.txt"));
+            return Err(format!("grading an example ended with exit code {exit_code}, not {code}: {message}"));
         }
-        let graded = reading::read_grade(&grade)?;
+        let graded = grade_reader::read_grade(&grade_file)?;
         crate::problem::ensure((graded.code == "AC") == (code == 0), format!("an example was graded {}", graded.code))
     }
 }
@@ -167,17 +167,17 @@ impl Grader for Program {
     /// Checks that the grader works. The disk must have enough free space, and the grader must accept the reference's
     /// own trace of a scene. It must also run a program that does nothing in the sandbox, and not accept it. A grader
     /// that records no traces, as in tests, is only started.
-    async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
-        let room = folder.join("room");
-        fs::write(&room, vec![1; REQUIRED_BYTES])
+    async fn check_ability(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
+        let reserve = folder.join("room");
+        fs::write(&reserve, vec![1; REQUIRED_BYTES])
             .map_err(|error| format!("the disk has too little free space for grading: {error}"))?;
-        fs::remove_file(&room).map_err(|error| error.to_string())?;
+        fs::remove_file(&reserve).map_err(|error| error.to_string())?;
         let trace = folder.join("right").join(CHECK_SCENE).with_extension("bin");
         let idle = folder.join("idle");
-        let above = trace.parent().unwrap_or(folder);
-        fs::create_dir_all(above).and_then(|()| fs::create_dir(&idle)).map_err(|error| error.to_string())?;
-        let recorded = ["simulate", &format!("asset:{CHECK_SCENE}"), "--output", &trace.display().to_string()];
-        if self.step(folder, &recorded, &stop).await? != 0 {
+        let group_folder = trace.parent().unwrap_or(folder);
+        fs::create_dir_all(group_folder).and_then(|()| fs::create_dir(&idle)).map_err(|error| error.to_string())?;
+        let simulate = ["simulate", &format!("asset:{CHECK_SCENE}"), "--output", &trace.display().to_string()];
+        if self.run_step(folder, &simulate, &stop).await? != 0 {
             return Ok(());
         }
         self.try_example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
@@ -213,19 +213,19 @@ impl Grader for Program {
         command.stderr(fs::File::create(&messages).map_err(fault_about("write the messages"))?);
         let child = Child::start(command).map_err(fault_about("start the grader"))?;
         let (end, stopped) = wait_for_end(&child, Duration::from_secs(task.seconds), &stop).await?;
-        let said = || last_output(&messages);
+        let message = || last_output(&messages);
         match end {
             // The exit codes mean: 0 accepted, 1 not accepted, 130 stopped with partial results.
             End::Code(0 | 1) => {}
             End::Code(130) if stopped => {}
             End::Code(code) => {
-                return Err(GraderFault::Failed(format!("the grader ended with exit code {code}: {}", said())));
+                return Err(GraderFault::Failed(format!("the grader ended with exit code {code}: {}", message())));
             }
             End::Signal(signal) => {
-                return Err(GraderFault::Failed(format!("the grader was killed by signal {signal}: {}", said())));
+                return Err(GraderFault::Failed(format!("the grader was killed by signal {signal}: {}", message())));
             }
         }
-        let mut outcome = reading::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
+        let mut outcome = grade_reader::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;
         outcome.grader = grader;
         if stopped {
             outcome.summary = format!("stopped after {} seconds; {}", task.seconds, outcome.summary);
@@ -288,9 +288,9 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name must be a plain file name"));
     }
-    let place = folder.join("submission");
-    fs::create_dir(&place)?;
-    let program = place.join(name);
+    let link_folder = folder.join("submission");
+    fs::create_dir(&link_folder)?;
+    let program = link_folder.join(name);
     fs::rename(submission, &program)?;
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755))?;
     Ok(program)
@@ -302,6 +302,6 @@ fn last_output(file: &Path) -> String {
     let from = bytes.len().saturating_sub(MAX_MESSAGE_LENGTH);
     let text = String::from_utf8_lossy(&bytes[from..]);
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");
-    if words.is_empty() { "it said nothing".to_owned() } else { words }
+    let text = plain.split_whitespace().collect::<Vec<_>>().join(" ");
+    if text.is_empty() { "the grader printed nothing".to_owned() } else { text }
 }

@@ -5,7 +5,7 @@ use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest, digest_of_file},
     task::Outcome,
-    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Manners, Renewal, SignOfLife},
+    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Renewal, WorkerReport, WorkerSettings},
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -74,11 +74,11 @@ impl RemoteSource {
     /// Sends a request to the server in a thread that may block.
     async fn call<T: Send + 'static>(
         &self,
-        ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
+        request: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
     ) -> Result<T, SourceError> {
         let parts = self.0.clone();
-        let asked = tokio::task::spawn_blocking(move || ask(&parts)).await;
-        asked.map_err(|error| SourceError::Away(error.to_string()))?
+        let answer = tokio::task::spawn_blocking(move || request(&parts)).await;
+        answer.map_err(|error| SourceError::Unavailable(error.to_string()))?
     }
 
     async fn send_with_lease(
@@ -96,7 +96,7 @@ fn format_lease(lease: &Lease) -> String {
 }
 
 fn outage(error: impl fmt::Display) -> SourceError {
-    SourceError::Away(format!("the server does not answer: {error}"))
+    SourceError::Unavailable(format!("the server does not answer: {error}"))
 }
 
 impl Parts {
@@ -109,7 +109,7 @@ impl Parts {
         let answer = self.post(path, body)?;
         let mut answer = check_status(answer)?;
         let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
-        serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
+        serde_json::from_slice(&text).map_err(|error| SourceError::Rejected(format!("the server's answer: {error}")))
     }
 
     /// Adds the worker's identity, and the job's lease if there is one, to a request.
@@ -122,7 +122,7 @@ impl Parts {
     }
 
     fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
-        let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
+        let body = serde_json::to_vec(body).map_err(|error| SourceError::Rejected(error.to_string()))?;
         let request = self.sign(self.agent.post(self.url(path)), None);
         request.header("Content-Type", "application/json").send(&body).map_err(outage)
     }
@@ -141,8 +141,8 @@ fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceErro
     // If this program makes an error, or something is missing, a retry does not help. An error of a proxy is temporary.
     match status.as_u16() {
         401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
-        400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),
-        _ => Err(SourceError::Away(text)),
+        400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Rejected(text)),
+        _ => Err(SourceError::Unavailable(text)),
     }
 }
 
@@ -156,7 +156,7 @@ impl JobSource for RemoteSource {
             let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
             serde_json::from_slice(&text)
                 .map(Some)
-                .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
+                .map_err(|error| SourceError::Rejected(format!("the job can't be read: {error}")))
         })
         .await
     }
@@ -201,16 +201,16 @@ impl JobSource for RemoteSource {
         let found = digest_of_file(file).await.map_err(outage)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
-            return Err(SourceError::Away(format!("the server's bytes do not match {digest}")));
+            return Err(SourceError::Unavailable(format!("the server's bytes do not match {digest}")));
         }
         Ok(())
     }
 
     async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, SourceError> {
-        let artifact = digest_of_file(file).await.map_err(|error| SourceError::Refused(error.to_string()))?;
+        let artifact = digest_of_file(file).await.map_err(|error| SourceError::Rejected(error.to_string()))?;
         let (lease, digest, place) = (format_lease(lease), artifact.digest.clone(), file.to_owned());
         self.call(move |parts| {
-            let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
+            let input = fs::File::open(&place).map_err(|error| SourceError::Rejected(error.to_string()))?;
             let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
             let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(outage)?;
             check_status(answer).map(drop)
@@ -221,12 +221,12 @@ impl JobSource for RemoteSource {
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let alive =
-            SignOfLife { slots, fault: fault.map(str::to_owned), version: env!("CARGO_PKG_VERSION").to_owned() };
-        let manners: Manners = self.call(move |parts| parts.json("tick", &alive)).await?;
-        if manners.version != env!("CARGO_PKG_VERSION") {
-            tracing::debug!(server = manners.version, "the server is of another version");
+            WorkerReport { slots, fault: fault.map(str::to_owned), version: env!("CARGO_PKG_VERSION").to_owned() };
+        let settings: WorkerSettings = self.call(move |parts| parts.json("tick", &alive)).await?;
+        if settings.version != env!("CARGO_PKG_VERSION") {
+            tracing::debug!(server = settings.version, "the server has another version");
         }
-        self.0.tick_every.store(manners.tick_every.clamp(100, 60_000), Ordering::Relaxed);
+        self.0.tick_every.store(settings.tick_every.clamp(100, 60_000), Ordering::Relaxed);
         Ok(())
     }
 

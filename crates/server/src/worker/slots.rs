@@ -88,11 +88,10 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
                 wait = FIRST_WAIT;
                 // A panic affects only this job, not the worker.
                 let lease = job.lease.clone();
-                let done = tokio::spawn(run(source.clone(), health.clone(), job, stop.clone()));
+                let done = tokio::spawn(run_job(source.clone(), health.clone(), job, stop.clone()));
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
-                    report_ending(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop)
-                        .await;
+                    report_end(&source, &lease, JobEnd::Failed(format!("the worker failed: {error}")), &stop).await;
                 }
             }
             Err(error) => {
@@ -108,36 +107,36 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
 }
 
 /// The way in which a job ended, for the report to the source.
-enum JobEnding {
+enum JobEnd {
     Finished(Box<Outcome>),
     Failed(String),
     /// The job is given back, because the worker must stop.
-    GivenBack,
+    Returned,
     /// The lease is lost, so there is nothing to report.
     Lost,
 }
 
-async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: ClaimedJob, stop: CancellationToken) {
-    let lost = CancellationToken::new();
+async fn run_job<D: JobSource, G: Grader>(source: D, health: Health<G>, job: ClaimedJob, stop: CancellationToken) {
+    let lease_lost = CancellationToken::new();
     let folder = job_folder(&health.folder);
     let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK_FOLDER).join(PROGRESS_FILE));
-    let every = Duration::from_millis(job.renew_every);
-    let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), every, progress, lost.clone()));
-    let ending = match folder {
-        Err(error) => JobEnding::Failed(format!("the job's folder can't be created: {error}")),
+    let interval = Duration::from_millis(job.renew_every);
+    let renewal = tokio::spawn(renew(source.clone(), job.lease.clone(), interval, progress, lease_lost.clone()));
+    let job_end = match folder {
+        Err(error) => JobEnd::Failed(format!("the job's folder can't be created: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
             let grading = async {
-                match attempt(&source, &health.grader, &job, folder.path(), halt.clone()).await {
-                    Ok(outcome) => JobEnding::Finished(Box::new(outcome)),
-                    Err(GraderFault::Stopped) => JobEnding::GivenBack,
-                    Err(GraderFault::Failed(fault)) => JobEnding::Failed(fault),
+                match run_task(&source, &health.grader, &job, folder.path(), halt.clone()).await {
+                    Ok(outcome) => JobEnd::Finished(Box::new(outcome)),
+                    Err(GraderFault::Stopped) => JobEnd::Returned,
+                    Err(GraderFault::Failed(fault)) => JobEnd::Failed(fault),
                 }
             };
             tokio::pin!(grading);
             let ending = tokio::select! {
-                ending = &mut grading => Some(ending),
-                () = lost.cancelled() => None,
+                finished = &mut grading => Some(finished),
+                () = lease_lost.cancelled() => None,
                 () = stop.cancelled() => None,
             };
             match ending {
@@ -147,39 +146,39 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
                     halt.cancel();
                     match grading.await {
                         // The grading ended at the same moment as the wait for it.
-                        JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
-                        _ if lost.is_cancelled() => JobEnding::Lost,
-                        _ => JobEnding::GivenBack,
+                        JobEnd::Finished(outcome) if !lease_lost.is_cancelled() => JobEnd::Finished(outcome),
+                        _ if lease_lost.is_cancelled() => JobEnd::Lost,
+                        _ => JobEnd::Returned,
                     }
                 }
             }
         }
     };
     // If the grader failed, the machine may be the cause. In that case it does not count as a failure of the job.
-    let ending = match ending {
-        JobEnding::Failed(fault) if !health.check_after_fault(&stop).await => {
+    let job_end = match job_end {
+        JobEnd::Failed(fault) if !health.recheck_after_fault(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
-            JobEnding::GivenBack
+            JobEnd::Returned
         }
         ending => ending,
     };
-    report_ending(&source, &job.lease, ending, &stop).await;
-    keeping.abort();
+    report_end(&source, &job.lease, job_end, &stop).await;
+    renewal.abort();
 }
 
 /// Renews a lease until it is lost. This happens at the interval that the source requires, and whenever the grading
 /// makes progress.
-async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
-    let mut renewed = tokio::time::Instant::now();
-    let mut told = None;
+async fn renew<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
+    let mut last_renewal = tokio::time::Instant::now();
+    let mut reported = None;
     loop {
         tokio::time::sleep(every.min(REPORT_INTERVAL)).await;
-        let progress = file.as_deref().and_then(progress_in);
-        if progress == told && renewed.elapsed() < every {
+        let progress = file.as_deref().and_then(read_progress);
+        if progress == reported && last_renewal.elapsed() < every {
             continue;
         }
-        renewed = tokio::time::Instant::now();
-        told = progress;
+        last_renewal = tokio::time::Instant::now();
+        reported = progress;
         match source.renew(&lease, progress).await {
             Ok(answer) if answer.held => {}
             Ok(_) => {
@@ -193,7 +192,7 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
 }
 
 /// Reads the progress from a file that the grader wrote, such as `3/85`.
-fn progress_in(file: &Path) -> Option<Progress> {
+fn read_progress(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
     let (done, all) = text.trim().split_once('/')?;
@@ -208,7 +207,7 @@ impl From<SourceError> for GraderFault {
 }
 
 /// Fetches a job's files, grades the submission, and stores the reports.
-async fn attempt<D: JobSource, G: Grader>(
+async fn run_task<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
     job: &ClaimedJob,
@@ -240,41 +239,41 @@ async fn attempt<D: JobSource, G: Grader>(
 
 /// Repeats a request while the source does not answer, so that a short failure of the network does not count as a
 /// failure of the job.
-async fn retry_request<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
+async fn retry_request<T, F: Future<Output = Result<T, SourceError>>>(send: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
     for _ in 0..MAX_FETCHES {
-        match ask().await {
-            Err(SourceError::Away(error)) => tracing::warn!(error, "the source can't be reached"),
+        match send().await {
+            Err(SourceError::Unavailable(error)) => tracing::warn!(error, "the source can't be reached"),
             answer => return answer,
         }
         tokio::time::sleep(wait).await;
         wait = (wait * 2).min(MAX_WAIT);
     }
-    ask().await
+    send().await
 }
 
 /// Reports the result to the source. The number of tries is not limited, because a lost result would have to be
 /// computed again. Only a worker that must stop gives up after a few tries; its lease then expires.
-async fn report_ending<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
+async fn report_end<D: JobSource>(source: &D, lease: &Lease, ending: JobEnd, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;
     loop {
         let answer = match &ending {
-            JobEnding::Finished(outcome) => source.finish(lease, outcome).await,
-            JobEnding::Failed(fault) => {
+            JobEnd::Finished(outcome) => source.finish(lease, outcome).await,
+            JobEnd::Failed(fault) => {
                 tracing::warn!(job = lease.job, fault, "a try failed");
                 source.fail(lease, fault).await
             }
-            JobEnding::GivenBack => source.release(lease).await,
-            JobEnding::Lost => return,
+            JobEnd::Returned => source.release(lease).await,
+            JobEnd::Lost => return,
         };
         match answer {
             Ok(answer) if answer.held => return,
             Ok(_) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
-            Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => {
+            Err(error @ (SourceError::Rejected(_) | SourceError::Dismissed)) => {
                 return tracing::error!(job = lease.job, %error, "the result is rejected; the lease will expire");
             }
-            Err(SourceError::Away(error)) => {
+            Err(SourceError::Unavailable(error)) => {
                 tracing::warn!(job = lease.job, error, "the result can't be delivered yet")
             }
         }

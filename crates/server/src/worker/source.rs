@@ -14,12 +14,12 @@ use thiserror::Error;
 pub enum SourceError {
     /// The source does not answer at present; a retry may succeed.
     #[error("{0}")]
-    Away(String),
+    Unavailable(String),
     /// The source rejects the request; a retry cannot succeed.
     #[error("{0}")]
-    Refused(String),
+    Rejected(String),
     /// The source no longer accepts the worker, because its token is unknown or was revoked.
-    #[error("its token is unknown or revoked; an administrator can create another one on the page \"Administration\"")]
+    #[error("the worker's token is unknown or revoked; create another one on the page \"Administration\"")]
     Dismissed,
 }
 

@@ -3,7 +3,7 @@ use super::{
     child::{Child, End, set_limits},
     program::isolate,
 };
-use crate::health::without_paths;
+use crate::health::strip_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
 /// The maximum wall time and processor time of the grader's check, in seconds.
@@ -31,14 +31,14 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let Ok(end) = tokio::time::timeout(Duration::from_secs(MAX_SECONDS), child.wait()).await else {
         child.kill();
         child.wait().await;
-        return Err(format!("the grader did not finish checking it within {MAX_SECONDS} seconds"));
+        return Err(format!("the grader did not finish checking the suite within {MAX_SECONDS} seconds"));
     };
-    let said = fs::read(messages.path()).unwrap_or_default();
-    let said = String::from_utf8_lossy(&said[..said.len().min(MAX_MESSAGE_LENGTH)]).into_owned();
-    tracing::info!(?end, said, "the grader checked a suite");
-    match (end, said.trim().strip_prefix("error:")) {
+    let output = fs::read(messages.path()).unwrap_or_default();
+    let output = String::from_utf8_lossy(&output[..output.len().min(MAX_MESSAGE_LENGTH)]).into_owned();
+    tracing::info!(?end, output, "the grader checked a suite");
+    match (end, output.trim().strip_prefix("error:")) {
         (End::Code(0), _) => Ok(()),
-        (End::Code(_), Some(said)) if !said.contains("unrecognized subcommand") => Err(without_paths(
+        (End::Code(_), Some(said)) if !said.contains("unrecognized subcommand") => Err(strip_paths(
             &said
                 .lines()
                 .map(str::trim)
@@ -48,6 +48,8 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
                 .replace(":;", ":"),
         )),
         (End::Code(_), _) => Ok(()),
-        (End::Signal(_), _) => Err("the grader failed while it checked it, perhaps because of its size".to_owned()),
+        (End::Signal(_), _) => {
+            Err("the grader failed while it checked the suite, perhaps because of its size".to_owned())
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The benchmark of the service, on a short ladder: its clients get answers, and its table says so.
+//! Runs the benchmark of the service on a short ladder, and checks its table.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::db::Address;
 

@@ -74,7 +74,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
     let payload =
         number(&fresh, "SELECT count(*) AS n FROM job WHERE campaign IS NOT NULL AND payload LIKE '%parity%'");
     assert!(payload.await >= all);
-    // One of them as a worker gets it.
+    // Claim one of the jobs, as a worker does.
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let row =
         transaction.one("SELECT payload FROM job WHERE campaign IS NOT NULL ORDER BY id LIMIT 1", values![]).await;
@@ -82,7 +82,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
         serde_json::from_str(&row.and_then(|row| row.text("payload")).expect("text")).expect("a task");
     drop(transaction);
     assert_eq!((task.submission.name.as_str(), task.submission.artifact.size), ("FOSS\"Sim", 12));
-    // A submission that came in while it began is graded, too.
+    // A submission that arrived while the regrade began is graded, too.
     let path = format!("{BASE}/{id}");
     grade_all(&fresh).await;
     let start = Instant::now();
@@ -127,7 +127,7 @@ async fn a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other(fresh: F
     server.course(&admin, "physics");
     server.member(&admin, "physics", "ada", "student").submit("physics", &program("AC", 1));
     let id = admin.post_json(BASE, r#"{"reason": "to see"}"#).expect(201).json()["id"].clone();
-    // A worker has the job of the regrade and is about to write its result.
+    // A worker has a job of the regrade, and is about to write its result.
     let mut worker = fresh.database.begin().await.expect("a transaction");
     worker.one("SELECT id FROM job WHERE campaign IS NOT NULL {for update}", values![]).await.expect("a job");
     // The regrade is discarded at this moment, which cancels its jobs.

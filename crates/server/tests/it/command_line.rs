@@ -6,7 +6,7 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// How a command ends, and what it says.
+/// Runs a command, and returns its exit code and its output.
 fn say(words: &[&str], data: &Path) -> (Option<i32>, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
         .args(words)
@@ -29,7 +29,7 @@ fn a_mistyped_folder_is_told_and_not_made() {
         let (code, said) = say(words, &missing);
         assert!(code == Some(2) && said.contains("there is no data folder") && said.contains("--data"), "{said}");
         assert!(!missing.exists(), "{words:?}");
-        // A folder of something else.
+        // A folder that is not a data folder.
         let (code, said) = say(words, temp.path());
         assert!(code == Some(2) && said.contains("there is no database"), "{said}");
         assert_eq!(fs::read_dir(temp.path()).expect("a folder").count(), 0, "{words:?}");

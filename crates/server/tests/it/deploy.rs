@@ -1,4 +1,4 @@
-//! The examples of where servers and workers run: their options exist, and the tools that read them accept them.
+//! Checks the examples for deployment: their options exist, and the tools that read them accept them.
 use fosssim_testing::{Need, skip};
 use std::{
     fs,
@@ -14,14 +14,14 @@ fn read(name: &str) -> String {
     fs::read_to_string(deploy().join(name)).expect(name)
 }
 
-/// The words of a file that look like options.
+/// Returns the words of a file that look like options.
 fn options(text: &str) -> Vec<String> {
     let words = text.split(|c: char| c.is_whitespace() || matches!(c, '"' | ',' | '[' | ']' | '`' | ';'));
     let names = words.filter_map(|word| word.strip_prefix("--")).map(|word| word.split('=').next().unwrap_or_default());
     names.filter(|name| !name.is_empty()).map(|name| format!("--{name}")).collect()
 }
 
-/// The lines on which the server's program is started, with those that belong to them.
+/// Returns the lines that start the server's program, with their continuation lines.
 fn commands(text: &str) -> String {
     let starts = |line: &str| !line.trim_start().starts_with('#') || line.contains("fosssim-server worker");
     text.lines().filter(|line| starts(line)).collect::<Vec<_>>().join("\n")
@@ -81,7 +81,7 @@ fn units_are_accepted() {
     }
 }
 
-/// The most that systemd says of a unit's exposure, in tenths; 0 would be a service without any rights.
+/// The maximum exposure of a unit according to systemd, in tenths. A service without any rights has 0.
 const EXPOSURE: u32 = 29;
 
 #[test]
@@ -91,7 +91,7 @@ fn units_leave_little_exposed() {
     }
     for (name, user) in [("fosssim-server.service", "fosssim"), ("fosssim-worker.service", "fosssim-worker")] {
         let text = read(&format!("systemd/{name}"));
-        // Anybody who runs strangers' programs is another user than anybody who keeps the grades.
+        // The user that runs untrusted programs is not the user that stores the grades.
         for line in [&format!("User={user}"), "Type=notify", "WatchdogSec=120", "PrivateTmp=yes"] {
             assert!(text.lines().any(|known| known == line), "{name} has no {line}");
         }

@@ -1,4 +1,4 @@
-//! The service's tests, in one binary. What differs between engines runs on both.
+//! The service's tests, in one binary. Tests that depend on the database engine run on both engines.
 
 mod bench;
 mod campaigns;

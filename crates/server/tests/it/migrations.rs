@@ -1,4 +1,4 @@
-//! Tables and their changes.
+//! Tests the database's tables and their changes.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
     db::{self, MigrateError},
@@ -38,7 +38,7 @@ async fn a_newer_database_is_left_alone(fresh: Fresh) {
     let error = db::migrate(&fresh.database).await.expect_err("a newer database");
     assert!(matches!(error, MigrateError::Newer { found } if found == newer), "{error}");
     assert!(error.to_string().contains("start the newer program"), "{error}");
-    // A server that runs all the while stops writing as soon as it sees that.
+    // A server that is still running stops writing as soon as it notices the newer tables.
     assert!(fresh.database.is_healthy().await);
     let refused = fresh.database.begin().await.expect_err("a newer database");
     assert!(refused.is_transient() && refused.to_string().contains("a newer program"), "{refused}");

@@ -1,5 +1,4 @@
-//! Statements that run all the time go by indexes, however many rows there are. `FOSSSIM_ROWS=1000000` makes them a
-//! million.
+//! Checks that frequent statements use indexes. `FOSSSIM_ROWS=1000000` tests them with a million rows.
 use crate::support::{
     engines::{Fresh, run},
     rows,
@@ -11,12 +10,12 @@ use fosssim_server::{
 };
 use std::collections::BTreeMap;
 
-/// How often PostgreSQL has read each of the large tables from its beginning to its end.
+/// Returns how often PostgreSQL has read each of the large tables completely.
 async fn whole_reads(address: &Address) -> BTreeMap<String, i64> {
     let database = Database::open(address).await.expect("a database");
     // All queries of this test use one connection.
     let mut transaction = database.begin().await.expect("a transaction");
-    // Processes of the database tell what they did when they end, if not before.
+    // The database's processes report their statistics when they end, or earlier.
     let start = std::time::Instant::now();
     loop {
         transaction

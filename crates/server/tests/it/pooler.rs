@@ -1,10 +1,10 @@
-//! Behind PgBouncer, with many clients and few connections.
+//! Tests the service behind PgBouncer, with many clients and few connections.
 use crate::support::{
     engines::{Fresh, run},
     server::{Server, program},
 };
 
-/// Notifications of a session that listened would come to others' transactions, and end them.
+/// If a session listened for notifications, they would arrive in other clients' transactions and end them.
 #[test]
 fn nobody_is_refused_behind_a_pooler() {
     run(async {

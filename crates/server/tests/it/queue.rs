@@ -1,4 +1,4 @@
-//! The queue on both engines. No test waits for a clock: leases and times are moved in the table instead.
+//! Tests the queue on both engines. No test waits for a clock: leases and times are changed in the table instead.
 use crate::support::engines::{Fresh, on_all_engines};
 use fosssim_server::{
     db::Database,
@@ -31,7 +31,7 @@ const POLICY: QueuePolicy = QueuePolicy {
     longest_wait: Duration::from_secs(100),
 };
 
-/// Longer than any job.
+/// A duration that is longer than any job.
 const MOST: Duration = Duration::from_secs(3600);
 
 async fn enqueue(database: &Database, turn: Turn) -> i64 {
@@ -74,10 +74,10 @@ async fn tick(database: &Database) -> queue::Tick {
     tick
 }
 
-/// Lets time pass while somebody looks every now and then.
+/// Lets time pass, with regular ticks.
 async fn let_pass(database: &Database, time: Duration) {
     let millis = i64::try_from(time.as_millis()).expect("a short time");
-    let due = i64::try_from(POLICY.tick_every().as_millis()).expect("a short time");
+    let due = i64::try_from(POLICY.tick_interval().as_millis()).expect("a short time");
     let mut transaction = database.begin().await.expect("a transaction");
     transaction
         .execute(
@@ -171,7 +171,7 @@ async fn an_answer_that_got_lost_may_be_repeated(fresh: Fresh) {
     let claimed = claim(database, "w").await.expect("a job");
     assert_eq!(complete(database, &claimed.lease).await, Completion::Done);
     assert_eq!(complete(database, &claimed.lease).await, Completion::Repeated);
-    // Work that was done in time enough is not thrown away because its lease ran out meanwhile.
+    // A finished result is accepted even if its lease has expired in the meantime.
     enqueue(database, Turn::Student(1)).await;
     let slow = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
@@ -271,7 +271,7 @@ async fn students_take_turns(fresh: Fresh) {
     let third_first = enqueue(database, third).await;
     let calm_second = enqueue(database, calm).await;
     assert_eq!(claim_all(database).await, [own[0], calm_first, third_first, own[1], calm_second, own[2]]);
-    // An account with nothing in the queue pays for nothing that was.
+    // The earlier jobs of an account without waiting jobs do not delay its next job.
     let again = enqueue(database, busy).await;
     let other = enqueue(database, calm).await;
     assert_eq!(claim_all(database).await, [again, other]);
@@ -292,7 +292,7 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
     let database = &fresh.database;
     let place = async |job| {
         let mut transaction = database.read().await.expect("a transaction");
-        queue::queue_place(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
+        queue::find_queue_position(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
     };
     let regrade = enqueue(database, Turn::Campaign(1)).await;
     let mut jobs = Vec::new();
@@ -337,7 +337,7 @@ async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {
     transaction.commit().await.expect("commit");
     let found = tick(database).await;
     assert!(found.outage && found.retried == 0, "{found:?}");
-    // From here on the lease runs again.
+    // From here on, the lease runs again.
     let_pass(database, POLICY.lease / 2).await;
     assert_eq!(tick(database).await, queue::Tick::default());
     let_pass(database, POLICY.lease).await;

@@ -1,4 +1,4 @@
-//! Files that are too old are removed, and no other files.
+//! Tests that expired files are removed, and no other files.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},
@@ -12,7 +12,7 @@ use std::{collections::HashSet, time::Duration};
 
 on_both_engines!(old_uploads_go_and_grades_stay);
 
-/// Those of these digests that a test says are named.
+/// Returns those of the digests that the test declares as referenced.
 fn named(
     digests: Vec<Digest>,
     is_named: impl FnMut(&Digest) -> bool,
@@ -32,11 +32,11 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     let waiting = ada.submit("physics", b"#!grade HANG 0\n");
     let store = Store::folder(&server.folder.join("store")).expect("the store");
     let give_up = async |days: u64| {
-        retention::give_up(&fresh.database, &store, Some(Duration::from_secs(days * 86400)), Duration::ZERO)
+        retention::remove_expired(&fresh.database, &store, Some(Duration::from_secs(days * 86400)), Duration::ZERO)
             .await
             .expect("done")
     };
-    // Nothing is that old.
+    // No file is that old.
     let found = give_up(1).await;
     assert_eq!((found.submissions, found.artifacts), (0, 0), "what is named stays, however old the file");
     let mut transaction = fresh.database.begin().await.expect("a transaction");
@@ -45,7 +45,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     transaction.commit().await.expect("commit");
     let found = give_up(1).await;
     assert_eq!(found.submissions, 1, "what is being graded stays");
-    // Reports that say the same of others lie in the store once, and stay.
+    // Equal reports of other submissions are stored once, and are kept.
     assert!(found.artifacts >= 2, "the upload and its grade: {found:?}");
     assert_eq!(give_up(1).await, retention::RemovalCounts::default(), "once");
     // The grade and its history remain. The bytes are removed, and the page states this.
@@ -62,10 +62,10 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     ada.get(&path(new, "/files/report.txt")).expect(200);
     ada.get(&path(waiting, "/upload")).expect(200);
     assert!(!store.has(&Digest::from_bytes(&program("WA", 40))).await.expect("the store"));
-    // The same bytes handed in again are a submission like any other.
+    // If the same bytes are submitted again, they are an ordinary submission.
     let again = ada.submit("physics", &program("WA", 40));
     assert_eq!(ada.get(&path(again, "/upload")).expect(200).body, program("WA", 40));
-    // A regrade leaves out what can't be graded any more.
+    // A regrade leaves out submissions that can no longer be graded.
     let regrade = admin.post_json("/api/v1/courses/physics/assignments/m1/regrades", r#"{"reason": "to see"}"#);
     assert_eq!(regrade.expect(201).json()["submissions"], 3);
     let audit = admin.get("/api/v1/audit").expect(200).text();
@@ -88,32 +88,39 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         };
         age(&place("sha256", &one), 48);
         age(&place("sha256", &two), 48);
-        // Stored once more it is young again, and its name may be on its way to the database.
+        // After it is stored again, the artifact is young, because the database may be about to refer to it.
         crate::support::put(&store, b"two").await;
         let day = Duration::from_secs(24 * 3600);
-        // The parts that a killed server left of an upload, and that another is just writing.
+        // Incomplete files: one that a killed server left behind, and one that another server is writing.
         let part = |end: &str| place("sha256", &two).with_file_name(format!("{}#{end}", &two.as_str()[2..]));
         for (end, hours) in [("1", 48), ("2", 1)] {
             std::fs::write(part(end), b"tw").expect("written");
             age(&part(end), hours);
         }
-        assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1, "the old part");
+        assert_eq!(
+            store.remove_unreferenced(day, |digests| named(digests, |_| false)).await.expect("done"),
+            1,
+            "the old part"
+        );
         assert!(!part("1").exists() && part("2").exists());
-        // A file that is set aside remains for a day, and can still be read.
+        // A file in the trash is kept for a day, and can still be read.
         assert_eq!(crate::support::bytes(&store, &one).await, b"one");
         age(&place("aside", &one), 25);
-        assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1);
+        assert_eq!(store.remove_unreferenced(day, |digests| named(digests, |_| false)).await.expect("done"), 1);
         assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
-        // A file that a server set aside before it was killed is restored when a row names it.
+        // A file that a killed server had moved to the trash is restored when a row refers to it.
         age(&place("sha256", &two), 48);
         std::fs::create_dir_all(place("aside", &two).parent().expect("a folder")).expect("a folder");
         std::fs::rename(place("sha256", &two), place("aside", &two)).expect("moved");
-        assert_eq!(store.give_up(day, |digests| named(digests, |name| *name == two)).await.expect("done"), 0);
+        assert_eq!(
+            store.remove_unreferenced(day, |digests| named(digests, |name| *name == two)).await.expect("done"),
+            0
+        );
         assert_eq!(crate::support::bytes(&store, &two).await, b"two");
     });
 }
 
-/// The same in a bucket, where what is put aside begins a new age; and a server with its workers on it.
+/// The same tests in a bucket, where a file in the trash begins a new age, and a server with workers on a bucket.
 #[cfg(feature = "s3")]
 mod bucket {
     use super::*;
@@ -129,7 +136,7 @@ mod bucket {
         }
     }
 
-    /// A server that answers like S3, with a bucket; nothing if there is none.
+    /// Starts a server that answers like S3, with a bucket; `None` if it is not installed.
     fn start() -> Option<(Moto, String)> {
         let port =
             std::net::TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();
@@ -153,7 +160,7 @@ mod bucket {
         Some((moto, url))
     }
 
-    /// How a process reaches it.
+    /// Returns the environment variables with which a process reaches the bucket.
     fn variables(url: &str) -> [(&'static str, String); 5] {
         [
             ("AWS_ENDPOINT", url.to_owned()),
@@ -182,7 +189,7 @@ mod bucket {
             assert!(!store.has(&Digest::from_bytes(b"none")).await.expect("an answer"));
             let long = Duration::from_secs(3600);
             assert_eq!(store.give_up(long, |digests| named(digests, |_| false)).await.expect("done"), 0, "too young");
-            // Nothing names either of them for a moment: put aside, and read all the same.
+            // Neither file is referenced for a moment: both are moved to the trash, and can still be read.
             let aside = Duration::ZERO;
             let mut count = 0;
             let named_later = |digests| {

@@ -1,4 +1,4 @@
-//! Workers do not wait for all people who submit.
+//! Tests that workers do not wait for all people who submit.
 use crate::support::engines::{Fresh, on_both_engines};
 use fosssim_server::db::Dialect;
 use std::sync::{
@@ -8,7 +8,7 @@ use std::sync::{
 
 on_both_engines!(workers_go_before_requests);
 
-/// Waits until this many requests want a transaction.
+/// Waits until `wanted` requests wait for a transaction.
 async fn asked(count: &AtomicUsize, wanted: usize) {
     while count.load(Ordering::SeqCst) < wanted {
         tokio::task::yield_now().await;

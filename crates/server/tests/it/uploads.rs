@@ -1,4 +1,4 @@
-//! The fuzzer's seeds of uploads, and what becomes of them when bytes change, through the fuzz target's own function.
+//! Tests the fuzzer's seeds of uploads, and changed seeds, with the fuzz target's own function.
 use std::path::Path;
 
 #[path = "../../../../fuzz/uploads.rs"]
@@ -7,7 +7,7 @@ mod entries;
 /// The number of changed seeds that are tried. `FOSSSIM_FUZZ` sets a larger number.
 const TRIES: usize = 4000;
 
-/// The same numbers on every run: what fails once fails again.
+/// Returns the same random numbers on every run, so that failures are reproducible.
 fn random() -> impl FnMut(usize) -> usize {
     let mut state: u64 = 0x9e37_79b9_7f4a_7c15;
     move |below: usize| {
@@ -22,7 +22,7 @@ fn tries() -> usize {
     std::env::var("FOSSSIM_FUZZ").ok().and_then(|number| number.parse().ok()).unwrap_or(TRIES)
 }
 
-/// The seeds of a target, by name.
+/// Returns the seeds of a target, by name.
 fn seeds(target: &str) -> Vec<(String, Vec<u8>)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds").join(target);
     let mut paths: Vec<_> =

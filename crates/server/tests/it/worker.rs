@@ -22,7 +22,7 @@ use tokio_util::sync::CancellationToken;
 struct Willing;
 
 impl Grader for Willing {
-    async fn prove(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
+    async fn check_ability(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
         Ok(())
     }
 
@@ -86,7 +86,7 @@ struct Broken {
 }
 
 impl Grader for Broken {
-    async fn prove(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
+    async fn check_ability(&self, _: &Path, _: CancellationToken) -> Result<(), String> {
         if self.knows { Err("it is broken".to_owned()) } else { Ok(()) }
     }
 

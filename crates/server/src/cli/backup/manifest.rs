@@ -19,13 +19,13 @@ pub(super) struct Manifest {
     pub(super) version: String,
     /// The version of the database's tables.
     pub(super) tables: i64,
-    pub(super) database: Copy,
+    pub(super) database: DatabaseCopy,
     pub(super) artifacts: Artifacts,
 }
 
 /// The copy of the database, as one file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Copy {
+pub(super) struct DatabaseCopy {
     /// The name of the copy's file in the backup's folder.
     pub(super) file: String,
     pub(super) sha256: Digest,
@@ -43,7 +43,7 @@ impl Manifest {
     /// Writes the manifest into a backup's folder.
     pub(super) fn write(&self, folder: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
-        fs::write(folder.join(MANIFEST_FILE), text).context("the backup's manifest can't be written")
+        fs::write(folder.join(MANIFEST_FILE), text).context("cannot write the backup's manifest")
     }
 
     /// Reads the manifest of a backup.
@@ -55,12 +55,12 @@ impl Manifest {
         let file = folder.join(MANIFEST_FILE);
         let text = fs::read_to_string(&file)
             .with_context(|| format!("{} is not a complete backup: it has no {MANIFEST_FILE}", folder.display()))?;
-        let form: serde_json::Value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
-        let schema = form["schema"].as_u64().unwrap_or_default();
+        let json: serde_json::Value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
+        let schema = json["schema"].as_u64().unwrap_or_default();
         if schema > u64::from(SCHEMA) {
-            let by = form["version"].as_str().unwrap_or("unknown");
-            bail!("the backup has format {schema}, this program reads up to {SCHEMA}: restore it with version {by}");
+            let version = json["version"].as_str().unwrap_or("unknown");
+            bail!("the backup has format {schema}, but this program reads up to {SCHEMA}: use version {version}");
         }
-        serde_json::from_value(form).with_context(|| format!("{} is not understood", file.display()))
+        serde_json::from_value(json).with_context(|| format!("{} is not a valid manifest", file.display()))
     }
 }

@@ -13,7 +13,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use futures_util::TryStreamExt;
-use manifest::{Artifacts, Copy, Manifest};
+use manifest::{Artifacts, DatabaseCopy, Manifest};
 use std::{
     fs,
     os::unix::fs::DirBuilderExt,
@@ -26,27 +26,27 @@ const POSTGRES_COPY: &str = "fosssim.dump";
 
 /// Copies all data into a new folder, while the server runs.
 pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
-    let (folders, output) = (ServiceFolders::find(&arguments.place)?, &arguments.output);
+    let (folders, output) = (ServiceFolders::find(&arguments.storage)?, &arguments.output);
     if output.exists() {
         bail!("{} already exists; choose a new folder", output.display());
     }
-    let (database, address) = folders.open_database(&arguments.place).await?;
-    let store = folders.store(&arguments.place)?;
-    // The folder gets its name when it is complete.
+    let (database, address) = folders.open_database(&arguments.storage).await?;
+    let store = folders.store(&arguments.storage)?;
+    // The folder gets its final name when it is complete.
     let partial = PathBuf::from(format!("{}.partial-{}", output.display(), std::process::id()));
     fs::DirBuilder::new().mode(0o700).create(&partial).with_context(|| format!("cannot make {}", partial.display()))?;
-    let made = fill(&partial, &database, &store, &address).await;
+    let manifest = write_backup(&partial, &database, &store, &address).await;
     database.close().await;
-    let made = made.inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;
+    let manifest = manifest.inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;
     fs::rename(&partial, output).with_context(|| format!("cannot rename {}", partial.display()))?;
-    let Artifacts { count, bytes } = made.artifacts;
-    let tables = made.tables;
+    let Artifacts { count, bytes } = manifest.artifacts;
+    let tables = manifest.tables;
     let (place, size) = (output.display(), crate::problem::format_size(bytes));
     println!("{place}: the database (tables of version {tables}) and {count} artifacts ({size})");
     Ok(())
 }
 
-async fn fill(folder: &Path, database: &Database, store: &Store, address: &Address) -> Result<Manifest> {
+async fn write_backup(folder: &Path, database: &Database, store: &Store, address: &Address) -> Result<Manifest> {
     let tables = db::read_version(database).await?;
     if tables == 0 {
         bail!("the database {address} is empty");
@@ -57,7 +57,7 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
     };
     let file = folder.join(name);
     match address {
-        Address::Sqlite(_) => database.copy_to(&file).await.context("the copy of the database")?,
+        Address::Sqlite(_) => database.copy_to(&file).await.context("cannot copy the database")?,
         Address::Postgres(url) => postgres::dump(url, &file).await?,
     }
     let artifacts = copy_artifacts(store, &folder.join("store")).await?;
@@ -66,7 +66,7 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         schema: manifest::SCHEMA,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         tables,
-        database: Copy { file: name.to_owned(), sha256: copy.digest, bytes: copy.size },
+        database: DatabaseCopy { file: name.to_owned(), sha256: copy.digest, bytes: copy.size },
         artifacts,
     };
     // All files are written to the disk before the manifest.
@@ -78,24 +78,24 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
 
 /// Copies all artifacts of the store into a folder of the backup, which has the form of a store.
 async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
-    let mut copied = Artifacts::default();
+    let mut total = Artifacts::default();
     fs::create_dir_all(folder)?;
     let mut digests = store.digests();
     while let Some(digest) = digests.try_next().await? {
         let (first, rest) = digest.as_str().split_at(2);
-        let place = folder.join("sha256").join(first);
-        fs::create_dir_all(&place)?;
-        let file = place.join(rest);
+        let subfolder = folder.join("sha256").join(first);
+        fs::create_dir_all(&subfolder)?;
+        let file = subfolder.join(rest);
         match store.fetch(&digest, &file).await {
             Ok(()) => {}
-            // Nothing refers to this artifact: it was removed in the meantime, or was listed twice because the sweep
+            // Nothing refers to this artifact: it was removed in the meantime, or was listed twice because a cleanup
             // moved it to the trash.
             Err(crate::store::StoreError::Missing(_)) => continue,
             Err(_) if file.exists() => continue,
             Err(error) => return Err(error.into()),
         }
-        copied.count += 1;
-        copied.bytes += fs::metadata(&file)?.len();
+        total.count += 1;
+        total.bytes += fs::metadata(&file)?.len();
     }
-    Ok(copied)
+    Ok(total)
 }

@@ -5,8 +5,8 @@ use std::{path::Path, process::Stdio};
 use tokio::process::Command;
 use url::{Url, form_urlencoded};
 
-/// Returns an address without its password, and the password.
-fn without_password(address: &str) -> Result<(Url, String)> {
+/// Splits an address into the address without its password, and the password.
+fn split_password(address: &str) -> Result<(Url, String)> {
     // The text may contain a password, so the error does not repeat it.
     let mut url = Url::parse(address).ok().context("the database's address is invalid")?;
     let form = format!("password={}", url.password().unwrap_or_default().replace('+', "%2B"));
@@ -22,33 +22,33 @@ fn without_password(address: &str) -> Result<(Url, String)> {
     Ok((url, passwords.into_iter().next_back().map(|(_, password)| password).unwrap_or_default()))
 }
 
-async fn run(program: &str, address: &str, words: &[&str], file: &Path) -> Result<()> {
-    let (url, password) = without_password(address)?;
+async fn run_tool(program: &str, address: &str, arguments: &[&str], file: &Path) -> Result<()> {
+    let (url, password) = split_password(address)?;
     let mut command = Command::new(program);
-    command.arg(format!("--dbname={url}")).args(words).arg(file).env("PGPASSWORD", password);
-    let ended = command.stdin(Stdio::null()).stdout(Stdio::null()).kill_on_drop(true).output().await;
-    let ended =
-        ended.with_context(|| format!("cannot start {program}: install PostgreSQL's client (postgresql-client)"))?;
-    if !ended.status.success() {
-        bail!("{program} failed: {}", String::from_utf8_lossy(&ended.stderr).trim());
+    command.arg(format!("--dbname={url}")).args(arguments).arg(file).env("PGPASSWORD", password);
+    let output = command.stdin(Stdio::null()).stdout(Stdio::null()).kill_on_drop(true).output().await;
+    let output =
+        output.with_context(|| format!("cannot start {program}: install PostgreSQL's client (postgresql-client)"))?;
+    if !output.status.success() {
+        bail!("{program} failed: {}", String::from_utf8_lossy(&output.stderr).trim());
     }
     Ok(())
 }
 
 /// Copies a PostgreSQL database into a file, with `pg_dump`.
 pub(super) async fn dump(address: &str, file: &Path) -> Result<()> {
-    run("pg_dump", address, &["--format=custom", "--no-owner", "--no-privileges", "--file"], file).await
+    run_tool("pg_dump", address, &["--format=custom", "--no-owner", "--no-privileges", "--file"], file).await
 }
 
 /// Restores a database copy into an empty database, in one transaction.
 pub(super) async fn load(address: &str, file: &Path) -> Result<()> {
-    let words = ["--no-owner", "--no-privileges", "--single-transaction", "--exit-on-error"];
-    run("pg_restore", address, &words, file).await
+    let arguments = ["--no-owner", "--no-privileges", "--single-transaction", "--exit-on-error"];
+    run_tool("pg_restore", address, &arguments, file).await
 }
 
 #[cfg(test)]
 mod tests {
-    use super::without_password;
+    use super::split_password;
 
     #[test]
     fn an_address_shows_no_password() {
@@ -61,10 +61,10 @@ mod tests {
             ("postgres://db/course?password=x%20y&user=me", "postgres://db/course?user=me", "x y"),
             ("postgresql:///course?host=/run/postgresql", "postgresql:///course?host=/run/postgresql", ""),
         ] {
-            let (url, found) = without_password(address).expect("an address");
+            let (url, found) = split_password(address).expect("an address");
             assert_eq!((url.as_str(), found.as_str()), (shown, password));
         }
-        let error = without_password("postgres//me:geheim@db").expect_err("no address").to_string();
+        let error = split_password("postgres//me:geheim@db").expect_err("no address").to_string();
         assert!(!error.contains("geheim"), "{error}");
     }
 }

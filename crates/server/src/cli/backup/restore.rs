@@ -18,11 +18,11 @@ use std::{
 
 /// Restores a backup into an empty data folder and, for PostgreSQL, an empty database.
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
-    let (place, from) = (&arguments.place, arguments.backup.as_path());
+    let (place, from) = (&arguments.storage, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::NEWEST {
         bail!(
-            "the backup's tables have version {}, this program reads versions up to {}: restore it with version {}",
+            "the backup's tables have version {}, but this program reads versions up to {}: restore it with version {}",
             manifest.tables,
             db::NEWEST,
             manifest.version
@@ -31,12 +31,12 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     let copy = from.join(&manifest.database.file);
     let found = digest_of_file(&copy).await.with_context(|| copy.display().to_string())?;
     if found.digest != manifest.database.sha256 {
-        bail!("{} is damaged: it differs from the copy in the manifest", copy.display());
+        bail!("{} is damaged: its digest is not the one in the manifest", copy.display());
     }
     if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
         bail!("{} is not empty; a backup needs an empty data folder", place.data.display());
     }
-    let restored = fill(arguments, &manifest, &copy).await;
+    let restored = restore_into(arguments, &manifest, &copy).await;
     if restored.is_err() {
         // The data folder was empty before, and an incomplete one is useless.
         drop(fs::remove_dir_all(&place.data));
@@ -45,10 +45,10 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
 }
 
 /// Copies the artifacts and the database of a backup into an empty data folder.
-async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) -> Result<()> {
-    let (place, from) = (&arguments.place, arguments.backup.as_path());
+async fn restore_into(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) -> Result<()> {
+    let (place, from) = (&arguments.storage, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
-    let address = folders.database(place);
+    let address = folders.database_address(place);
     let is_dump = manifest.database.file == super::POSTGRES_COPY;
     match (&address, is_dump) {
         (Address::Sqlite(file), false) if file.exists() => bail!("the database {} already exists", file.display()),
@@ -68,7 +68,7 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     let restored = put_artifacts(&store, &from.join("store").join("sha256")).await?;
     if restored != manifest.artifacts {
         bail!(
-            "the backup is damaged: it has {} artifacts of {} bytes, and had {} of {}",
+            "the backup is damaged: it has {} artifacts of {} bytes instead of {} of {}",
             restored.count,
             restored.bytes,
             manifest.artifacts.count,
@@ -81,7 +81,7 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     }
     let tables = match manifest.tables {
         db::NEWEST => "of this version".to_owned(),
-        older => format!("of version {older}; starting the server brings them up to {}", db::NEWEST),
+        older => format!("of version {older}; the server updates them to {} when it starts", db::NEWEST),
     };
     println!("{}: the database (tables {tables}) and {} artifacts", place.data.display(), restored.count);
     Ok(())
@@ -98,9 +98,9 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
 
 /// Stores all files of a folder of artifacts. The digest of each file's bytes must be its name.
 async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
-    let mut put = Artifacts::default();
+    let mut total = Artifacts::default();
     if !folder.exists() {
-        return Ok(put);
+        return Ok(total);
     }
     for first in fs::read_dir(folder)? {
         let first = first?;
@@ -109,11 +109,11 @@ async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
             let name = [first.file_name(), file.file_name()].map(|part| part.to_string_lossy().into_owned()).concat();
             let stored = store.put_file(&file.path()).await?;
             if stored.digest.as_str() != name {
-                bail!("{} is damaged: its bytes have another digest than its name", file.path().display());
+                bail!("{} is damaged: its bytes do not match its name", file.path().display());
             }
-            put.count += 1;
-            put.bytes += stored.size;
+            total.count += 1;
+            total.bytes += stored.size;
         }
     }
-    Ok(put)
+    Ok(total)
 }

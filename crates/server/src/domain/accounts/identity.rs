@@ -144,16 +144,16 @@ pub(in crate::domain) async fn account_of_session(
     let row = transaction.row(statement, values![digest(session)]).await?;
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
-    let seen = SessionState {
+    let state = SessionState {
         is_vouched: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT_AGE,
         is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,
     };
-    Ok(Some((Account::from_row(&row)?, seen)))
+    Ok(Some((Account::from_row(&row)?, state)))
 }
 
-/// Restarts a session's lifetime now.
+/// Extends a session, so that its lifetime begins again now.
 pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
     transaction.execute(statement, values![SESSION_LIFETIME, digest(session)]).await.map(drop)
@@ -163,17 +163,17 @@ pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, ses
 pub(in crate::domain) async fn begin_session(
     transaction: &mut Transaction,
     account: i64,
-    way: SignInMethod,
+    method: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
-    let token = if let SignInMethod::Token(token) = way { Some(token) } else { None };
+    let token = if let SignInMethod::Token(token) = method { Some(token) } else { None };
     let expired =
         "DELETE FROM session WHERE digest IN (SELECT digest FROM session WHERE expires_at < {now} {skip locked})";
     transaction.execute(expired, values![]).await?;
     let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
         VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
     transaction
-        .execute(statement, values![secret.digest(), account, SESSION_LIFETIME, way == SignInMethod::Vouched, token])
+        .execute(statement, values![secret.digest(), account, SESSION_LIFETIME, method == SignInMethod::Vouched, token])
         .await?;
     let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
         (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
@@ -186,16 +186,16 @@ pub(in crate::domain) async fn end_session(transaction: &mut Transaction, sessio
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Creates a link that signs in once, and invalidates the account's unused links. `way` is the sign-in method of the
+/// Creates a link that signs in once, and invalidates the account's unused links. `method` is the sign-in method of the
 /// person who requests the link.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
-    way: SignInMethod,
+    method: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    further_link(transaction, account, by, way).await
+    further_link(transaction, account, by, method).await
 }
 
 /// Creates another sign-in link. Earlier links stay valid.
@@ -203,13 +203,13 @@ pub(in crate::domain) async fn further_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
-    way: SignInMethod,
+    method: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
     transaction
-        .execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, way == SignInMethod::Vouched])
+        .execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, method == SignInMethod::Vouched])
         .await?;
     Ok(secret)
 }
@@ -240,12 +240,12 @@ pub(in crate::domain) async fn use_link(
     let Some(row) = row else { return Ok(None) };
     let (account, way) =
         (row.int("account")?, if row.flag("vouched")? { SignInMethod::Vouched } else { SignInMethod::Own });
-    // The person could not sign in at the provider, so staff may have connected the account with another person.
+    // Staff may have connected the account with another person at the provider, in a session from a staff link.
     if way == SignInMethod::Own {
         end_vouched_connections(transaction, account).await?;
     }
-    let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
-    Ok(able.map(|_| (account, way)))
+    let row = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
+    Ok(row.map(|_| (account, way)))
 }
 
 /// Ends all sessions of an account.
@@ -259,8 +259,8 @@ async fn end_vouched_connections(transaction: &mut Transaction, account: i64) ->
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Ends all sessions, links and tokens of an account. Called when the account gets more rights or is closed.
-pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+/// Ends all sessions, links and tokens of an account. This is called when the account gets more rights or is closed.
+pub(in crate::domain) async fn end_all_access(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
@@ -271,7 +271,7 @@ pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i
 
 /// Makes sure that only the person can use the account. Sessions and tokens from staff links end, because staff may
 /// have used these links.
-pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+pub(in crate::domain) async fn end_vouched_access(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     end_vouched_connections(transaction, account).await?;
     transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
@@ -296,13 +296,14 @@ pub(in crate::domain) async fn new_token(
     account: Option<i64>,
     name: &str,
     by: i64,
-    way: SignInMethod,
+    method: SignInMethod,
 ) -> Result<NewToken, DbError> {
     let secret = NewSecret::new(if account.is_some() { PERSON_PREFIX } else { WORKER_PREFIX });
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
         VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
-    let row =
-        transaction.one(statement, values![account, name, secret.digest(), by, way == SignInMethod::Vouched]).await?;
+    let row = transaction
+        .one(statement, values![account, name, secret.digest(), by, method == SignInMethod::Vouched])
+        .await?;
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 

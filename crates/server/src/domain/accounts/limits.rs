@@ -38,30 +38,30 @@ pub struct TransferLimits {
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
     archives: Turns,
-    refused: Throttle,
+    rejected_archives: Throttle,
 }
 
 /// The permission for a transfer, which ends when this value is dropped.
 #[derive(Debug)]
 pub struct Transfer {
-    _of_account: OwnedSemaphorePermit,
-    _of_all: SemaphorePermit<'static>,
+    _account_permit: OwnedSemaphorePermit,
+    _server_permit: SemaphorePermit<'static>,
 }
 
 impl TransferLimits {
-    /// Creates the limits; the last three are in bytes.
+    /// Creates the limits. The last three are numbers of bytes.
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }
     }
 
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
-        let most = self.transfers;
-        let of_account = find_shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
-        let many = |_| Problem::too_many(format!("at most {most} simultaneous transfers are allowed per account"));
-        let of_account = of_account.map_err(many)?;
-        let of_all = ALL_TRANSFERS.try_acquire();
-        let of_all = of_all.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
-        Ok(Transfer { _of_account: of_account, _of_all: of_all })
+        let limit = self.transfers;
+        let account_permit = find_shared(&self.by_account, account, || Semaphore::new(limit)).try_acquire_owned();
+        let too_many = |_| Problem::too_many(format!("at most {limit} simultaneous transfers are allowed per account"));
+        let account_permit = account_permit.map_err(too_many)?;
+        let permit = ALL_TRANSFERS.try_acquire();
+        let permit = permit.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
+        Ok(Transfer { _account_permit: account_permit, _server_permit: permit })
     }
 
     /// Waits until this server handles no other upload of the account.
@@ -90,7 +90,7 @@ impl Member {
     }
 
     /// Waits until an archive of the account may be checked. The archive counts as rejected until
-    /// [`Self::note_right_archive`] is called.
+    /// [`Self::accept_archive`] is called.
     ///
     /// # Errors
     ///
@@ -98,7 +98,7 @@ impl Member {
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
         ensure(
-            self.app.limits.refused.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()),
+            self.app.limits.rejected_archives.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()),
             Problem::too_many(format!(
                 "more than {MAX_REJECTED_PER_MINUTE} of your archives were rejected in a minute"
             )),
@@ -107,12 +107,12 @@ impl Member {
     }
 
     /// Records that the archive was accepted.
-    pub fn note_right_archive(&self) {
-        self.app.limits.refused.put_back(self.account.id);
+    pub fn accept_archive(&self) {
+        self.app.limits.rejected_archives.return_token(self.account.id);
     }
 
     /// Returns the stored bytes of the person, of the course and of the server, and the limit for each.
-    async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
+    async fn storage_usage(&self, transaction: &mut Transaction) -> Result<[StorageUsage; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
             "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
@@ -120,65 +120,65 @@ impl Member {
             CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE ? > 0), 0) AS {int}) AS server";
         let server = i64::try_from(limits.server).unwrap_or(i64::MAX);
         let row = transaction.one(statement, values![self.account.id, self.course, server]).await?;
-        let kept = |column: &str, most| {
-            row.int(column).map(|bytes| RoomShare { bytes: u64::try_from(bytes).unwrap_or(0), most })
+        let usage = |column: &str, most| {
+            row.int(column).map(|bytes| StorageUsage { bytes: u64::try_from(bytes).unwrap_or(0), limit: most })
         };
-        Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
+        Ok([usage("student", limits.student)?, usage("course", limits.course)?, usage("server", limits.server)?])
     }
 
-    /// Returns sentences about the space for uploads: to staff about their course, and to everyone about a limit that
-    /// is nearly reached.
+    /// Describes the space for uploads in sentences. Staff always read about their course, and everyone reads about a
+    /// limit that is nearly reached.
     ///
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn describe_kept_bytes(&self) -> Result<Vec<String>, Problem> {
+    pub async fn describe_storage(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let [student, course, server] = self.shares(&mut transaction).await?;
+        let [student, course, server] = self.storage_usage(&mut transaction).await?;
         let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];
-        let told = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_all() || *always);
-        Ok(told.map(|(whose, kept, _)| kept.describe(whose)).collect())
+        let reported = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_full() || *always);
+        Ok(reported.map(|(whose, kept, _)| kept.describe(whose)).collect())
     }
 
     /// Checks that `size` further bytes may be stored.
     pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
-        let [student, course, server] = self.shares(transaction).await?;
-        ensure_within("your uploads and reports", student, size)?;
-        ensure_within("the uploads and reports of this course", course, size)?;
-        ensure_within("the uploads and reports on this server", server, size)
+        let [student, course, server] = self.storage_usage(transaction).await?;
+        ensure_storage("your uploads and reports", student, size)?;
+        ensure_storage("the uploads and reports of this course", course, size)?;
+        ensure_storage("the uploads and reports on this server", server, size)
     }
 }
 
 /// A number of stored bytes, and its limit. A limit of 0 means that there is no limit.
 #[derive(Debug, Clone, Copy)]
-struct RoomShare {
+struct StorageUsage {
     bytes: u64,
-    most: u64,
+    limit: u64,
 }
 
-impl RoomShare {
+impl StorageUsage {
     /// Returns whether at least four fifths of the limit are used.
-    fn is_nearly_all(self) -> bool {
-        self.most > 0 && self.bytes >= self.most / 5 * 4
+    fn is_nearly_full(self) -> bool {
+        self.limit > 0 && self.bytes >= self.limit / 5 * 4
     }
 
     fn describe(self, whose: &str) -> String {
-        let kept = format!("Stored uploads and reports of {whose}: {}", problem::format_size(self.bytes));
-        let most = problem::format_size(self.most);
-        match self.most {
-            0 => kept + ".",
-            _ if self.is_nearly_all() => {
-                format!("{kept} of {most}. When the space is used up, uploads are rejected. Ask the administrator.")
+        let stored = format!("Stored uploads and reports of {whose}: {}", problem::format_size(self.bytes));
+        let most = problem::format_size(self.limit);
+        match self.limit {
+            0 => stored + ".",
+            _ if self.is_nearly_full() => {
+                format!("{stored} of {most}. When the space is used up, uploads are rejected. Ask the administrator.")
             }
-            _ => format!("{kept} of {most}."),
+            _ => format!("{stored} of {most}."),
         }
     }
 }
 
-fn ensure_within(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) -> Result<(), Problem> {
-    if most == 0 || kept.saturating_add(size) <= most {
+fn ensure_storage(what: &str, StorageUsage { bytes, limit }: StorageUsage, size: u64) -> Result<(), Problem> {
+    if limit == 0 || bytes.saturating_add(size) <= limit {
         return Ok(());
     }
-    let [kept, most, size] = [kept, most, size].map(problem::format_size);
-    Err(Problem::quota(format!("{what} use {kept} of {most}, and this upload has {size}")))
+    let [bytes, limit, size] = [bytes, limit, size].map(problem::format_size);
+    Err(Problem::quota(format!("{what} use {bytes} of {limit}, and this upload has {size}")))
 }

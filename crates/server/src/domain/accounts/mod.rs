@@ -3,7 +3,7 @@
 pub(super) mod identity;
 pub(super) mod limits;
 pub(super) mod newcomer;
-pub(super) mod pending;
+pub(super) mod pending_sign_in;
 pub(super) mod provider;
 pub(super) mod throttle;
 pub(super) mod turns;

@@ -13,7 +13,7 @@ pub(in crate::domain) struct Newcomer<'a> {
     pub(in crate::domain) issuer: &'a str,
     pub(in crate::domain) subject: &'a str,
     pub(in crate::domain) name: Option<&'a str>,
-    /// A name from which the login is made; of an e-mail address, only the part before the @.
+    /// The name from which a new account's login is made. Only the part of an e-mail address before the @ is used.
     pub(in crate::domain) nickname: Option<&'a str>,
 }
 
@@ -25,8 +25,8 @@ impl Newcomer<'_> {
         known.map(|row| row.int("account")).transpose()
     }
 
-    /// Assigns an account to the person. If the session came from a link of staff, the assignment is marked as such.
-    pub(in crate::domain) async fn join(
+    /// Assigns an account to the person. If the session began with a staff link, this is stored with the assignment.
+    pub(in crate::domain) async fn link_account(
         &self,
         transaction: &mut Transaction,
         account: i64,
@@ -49,7 +49,7 @@ impl Newcomer<'_> {
             return Ok(account);
         }
         let mailbox = self.nickname.and_then(|nickname| nickname.split('@').next());
-        let base = login_of(mailbox.or(name.as_deref()).unwrap_or_default());
+        let base = login_from_name(mailbox.or(name.as_deref()).unwrap_or_default());
         for number in 1.. {
             let login = match number {
                 1 => base.clone(),
@@ -58,30 +58,30 @@ impl Newcomer<'_> {
             };
             let statement = "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
                 ON CONFLICT (login) DO NOTHING RETURNING id";
-            let made = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
-            let Some(made) = made else { continue };
+            let created = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
+            let Some(made) = created else { continue };
             let account = made.int("id")?;
-            self.join(transaction, account, false).await?;
+            self.link_account(transaction, account, false).await?;
             return Ok(account);
         }
-        Err(DbError::Other("no login is free".to_owned()))
+        Err(DbError::Other("cannot find a free login".to_owned()))
     }
 }
 
-/// Returns a name without characters that this service does not show, and shortened.
+/// Returns a shortened name without invisible characters.
 fn clean_name(name: &str) -> String {
     let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
 
 /// Creates a valid login from any name.
-fn login_of(word: &str) -> String {
+fn login_from_name(name: &str) -> String {
     let plain = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
         c if c.is_whitespace() => Some('.'),
         _ => None,
     };
-    let login: String = word.chars().filter_map(plain).take(40).collect();
+    let login: String = name.chars().filter_map(plain).take(40).collect();
     let login = login.trim_matches(['-', '.', '_']);
     if login.is_empty() { "user".to_owned() } else { login.to_owned() }
 }
@@ -100,8 +100,8 @@ mod tests {
             ("a'; DROP TABLE", "a.drop.table"),
             ("", "user"),
         ] {
-            assert_eq!(login_of(word), login, "{word}");
-            assert!(identity::check_slug("a login", &login_of(word)).is_ok());
+            assert_eq!(login_from_name(word), login, "{word}");
+            assert!(identity::check_slug("a login", &login_from_name(word)).is_ok());
         }
         assert_eq!(clean_name(" A\nB\u{0} "), "A B");
     }

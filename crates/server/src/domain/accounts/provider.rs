@@ -7,11 +7,11 @@ use crate::{
         accounts::{
             identity::{self, SignInMethod},
             newcomer::Newcomer,
-            pending::UNKNOWN_SIGN_IN,
+            pending_sign_in::UNKNOWN_SIGN_IN,
         },
         view::{self, Entry},
     },
-    oidc::{Provider, ProviderFault, ProviderPerson, SignInWords},
+    oidc::{Provider, ProviderFault, ProviderPerson, SignInSecrets},
     problem::{Problem, ensure},
     values,
 };
@@ -22,14 +22,14 @@ const PROVIDER_SERVICE: &str = "provider";
 impl From<ProviderFault> for Problem {
     fn from(fault: ProviderFault) -> Self {
         match fault {
-            ProviderFault::Away(detail) => Self::unavailable(detail),
+            ProviderFault::Unavailable(detail) => Self::unavailable(detail),
             ProviderFault::Rejected(detail) => Self::refused_sign_in(detail),
         }
     }
 }
 
 impl App {
-    fn known_provider(&self) -> Result<&Provider, Problem> {
+    fn configured_provider(&self) -> Result<&Provider, Problem> {
         self.provider.as_ref().ok_or_else(|| Problem::not_found("provider"))
     }
 
@@ -39,34 +39,36 @@ impl App {
     }
 
     /// Computes the secrets for a sign-in with this state.
-    async fn compute_words(&self, state: &str) -> Result<SignInWords, Problem> {
-        let (nonce, verifier) = (self.word_of("nonce", state).await?, self.word_of("verifier", state).await?);
-        Ok(SignInWords { state: state.to_owned(), nonce, verifier })
+    async fn compute_secrets(&self, state: &str) -> Result<SignInSecrets, Problem> {
+        let (nonce, verifier) =
+            (self.compute_secret("nonce", state).await?, self.compute_secret("verifier", state).await?);
+        Ok(SignInSecrets { state: state.to_owned(), nonce, verifier })
     }
 }
 
 /// Returns the provider's issuer in its stored form.
-fn issuer(provider: &Provider) -> String {
+fn stored_issuer(provider: &Provider) -> String {
     format!("{PROVIDER_SERVICE} {}", provider.issuer())
 }
 
 impl Visitor {
-    /// Begins a sign-in at the provider; the page `to` opens afterwards. If a person is already signed in, their
+    /// Begins a sign-in at the provider; the page `to` is opened afterwards. If a person is already signed in, their
     /// account is connected to the provider.
     ///
     /// # Errors
     ///
     /// Fails if there is no provider, if the provider does not answer, or if the person lacks the permission.
-    pub async fn begin_at_provider(&self, to: &str, connects: Option<&Person>) -> Result<LoginAnswer, Problem> {
-        let provider = self.app.known_provider()?;
-        let account = match connects {
-            Some(person) => person.lately_at_browser().map(|_| person.account.id)?,
+    pub async fn begin_at_provider(&self, to: &str, connecting: Option<&Person>) -> Result<LoginAnswer, Problem> {
+        let provider = self.app.configured_provider()?;
+        let account = match connecting {
+            Some(person) => person.require_recent_browser().map(|_| person.account.id)?,
             None => 0,
         };
         let browser = (&self.secrets, self.secrets.provider.as_ref());
-        let begun = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
-        let address = provider.address(&self.app.answer_address(), self.app.compute_words(&begun.state).await?).await?;
-        Ok(LoginAnswer { address: address.into(), browser: begun.browser })
+        let started = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
+        let address =
+            provider.address(&self.app.answer_address(), self.app.compute_secrets(&started.state).await?).await?;
+        Ok(LoginAnswer { address: address.into(), browser: started.browser })
     }
 
     /// Signs in the person for whom the provider issued a code. The code must answer a sign-in that this browser began.
@@ -75,10 +77,10 @@ impl Visitor {
     /// Fails if the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
     pub async fn sign_in_by_provider(&self, state: &str, code: &str) -> Result<LaunchTarget, Problem> {
         let (app, browser) = (&self.app, self.secrets.provider.as_ref());
-        let provider = app.known_provider()?;
+        let provider = app.configured_provider()?;
         let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
-        ensure(pending.at == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
-        let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_words(state).await?).await?;
+        ensure(pending.service == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
+        let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_secrets(state).await?).await?;
         let connects = match pending.account {
             0 => None,
             account => {
@@ -88,18 +90,18 @@ impl Visitor {
             }
         };
         let mut transaction = app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
+        ensure(pending.mark_used(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
         let account = match connects {
             Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
-            None => account(&mut transaction, provider, &person).await?,
+            None => resolve(&mut transaction, provider, &person).await?,
         };
         let session = identity::begin_session(&mut transaction, account, SignInMethod::Own).await?;
         transaction.commit().await?;
-        Ok(LaunchTarget { session, to: pending.to })
+        Ok(LaunchTarget { session, path: pending.path })
     }
 }
 
-fn newcomer<'a>(issuer: &'a str, person: &'a ProviderPerson) -> Newcomer<'a> {
+fn describe_newcomer<'a>(issuer: &'a str, person: &'a ProviderPerson) -> Newcomer<'a> {
     let (name, nickname) = (person.name.as_deref(), person.nickname.as_deref());
     Newcomer { issuer, subject: &person.subject, name, nickname }
 }
@@ -109,35 +111,35 @@ async fn connect(
     transaction: &mut Transaction,
     provider: &Provider,
     person: &ProviderPerson,
-    connects: &Person,
+    connecting: &Person,
 ) -> Result<i64, Problem> {
-    let (account, is_vouched) = (connects.account.id, connects.lately_at_browser()?.is_vouched);
-    let issuer = issuer(provider);
+    let (account, is_vouched) = (connecting.account.id, connecting.require_recent_browser()?.is_vouched);
+    let issuer = stored_issuer(provider);
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
     ensure(
         transaction.row(statement, values![account, &issuer]).await?.is_none(),
         Problem::conflict("your account is connected already", "disconnect it first, on the page Account"),
     )?;
     identity::end_sessions(transaction, account).await?;
-    identity::end_vouched(transaction, account).await?;
+    identity::end_vouched_access(transaction, account).await?;
     // The person may already have another account, from an earlier sign-in at the provider.
-    let newcomer = newcomer(&issuer, person);
+    let newcomer = describe_newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
-    newcomer.join(transaction, account, is_vouched).await?;
-    note(transaction, provider, account, &connects.account.login).await?;
+    newcomer.link_account(transaction, account, is_vouched).await?;
+    log(transaction, provider, account, &connecting.account.login).await?;
     Ok(account)
 }
 
-async fn note(transaction: &mut Transaction, provider: &Provider, account: i64, login: &str) -> Result<(), Problem> {
-    let text = format!("{login} signs in at {}", provider.label);
-    Ok(view::note(transaction, &Entry::new("account", account, &text)).await?)
+async fn log(transaction: &mut Transaction, provider: &Provider, account: i64, login: &str) -> Result<(), Problem> {
+    let text = format!("connected {login} to {}", provider.label);
+    Ok(view::log_event(transaction, &Entry::new("account", account, &text)).await?)
 }
 
 /// Finds or creates the account of a person who signs in.
-async fn account(transaction: &mut Transaction, provider: &Provider, person: &ProviderPerson) -> Result<i64, Problem> {
-    let issuer = issuer(provider);
-    let newcomer = newcomer(&issuer, person);
+async fn resolve(transaction: &mut Transaction, provider: &Provider, person: &ProviderPerson) -> Result<i64, Problem> {
+    let issuer = stored_issuer(provider);
+    let newcomer = describe_newcomer(&issuer, person);
     if newcomer.find(transaction).await?.is_none()
         && let Some(mailbox) = &person.mailbox
     {
@@ -151,9 +153,9 @@ async fn account(transaction: &mut Transaction, provider: &Provider, person: &Pr
                 return Err(Problem::refused_sign_in(detail));
             }
             // Staff could have signed in as this account.
-            identity::end_all(transaction, account).await?;
-            newcomer.join(transaction, account, false).await?;
-            note(transaction, provider, account, mailbox).await?;
+            identity::end_all_access(transaction, account).await?;
+            newcomer.link_account(transaction, account, false).await?;
+            log(transaction, provider, account, mailbox).await?;
         }
     }
     let account = newcomer.find_or_make(transaction).await?;
@@ -172,7 +174,7 @@ impl Person {
         let Some(provider) = &self.app.provider else { return Ok(false) };
         let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
         let mut transaction = self.app.0.database.read().await?;
-        Ok(transaction.row(statement, values![self.account.id, issuer(provider)]).await?.is_some())
+        Ok(transaction.row(statement, values![self.account.id, stored_issuer(provider)]).await?.is_some())
     }
 
     /// Disconnects the person's account from the provider.
@@ -181,8 +183,8 @@ impl Person {
     ///
     /// Fails if there is no provider, or the person did not sign in recently.
     pub async fn disconnect(&self) -> Result<(), Problem> {
-        let issuer = issuer(self.app.known_provider()?);
-        self.lately_at_browser()?;
+        let issuer = stored_issuer(self.app.configured_provider()?);
+        self.require_recent_browser()?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "DELETE FROM platform_account WHERE account = ? AND issuer = ?";
         transaction.execute(statement, values![self.account.id, issuer]).await?;

@@ -22,21 +22,21 @@ impl Throttle {
     pub(in crate::domain) fn try_acquire(&self, account: i64, per_minute: u32, now: Instant) -> bool {
         let most = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let level = |(level, at): (f64, Instant)| {
+        let level_now = |(level, at): (f64, Instant)| {
             (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
         };
         if buckets.len() > MAX_BUCKETS {
-            buckets.retain(|_, bucket| level(*bucket) < most);
+            buckets.retain(|_, bucket| level_now(*bucket) < most);
         }
         let bucket = buckets.entry(account).or_insert((most, now));
-        let left = level(*bucket);
-        let passes = left >= 1.0;
-        *bucket = (if passes { left - 1.0 } else { left }, now);
-        passes
+        let level = level_now(*bucket);
+        let is_allowed = level >= 1.0;
+        *bucket = (if is_allowed { level - 1.0 } else { level }, now);
+        is_allowed
     }
 
     /// Puts a token back into the bucket, for a request that should not count.
-    pub(in crate::domain) fn put_back(&self, account: i64) {
+    pub(in crate::domain) fn return_token(&self, account: i64) {
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((level, _)) = buckets.get_mut(&account) {
             *level += 1.0;
@@ -72,7 +72,7 @@ mod tests {
         assert!(!throttle.try_acquire(1, 12, start + Duration::from_secs(4)));
         assert!(throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
         assert!(!throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
-        throttle.put_back(1);
+        throttle.return_token(1);
         assert!(throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
     }
 }

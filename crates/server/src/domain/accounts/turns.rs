@@ -38,7 +38,7 @@ struct TurnState {
     waiting: BTreeMap<u64, i64>,
     next: u64,
     /// For each account, the seconds of checking that it used recently, and the time when they were last updated.
-    taken: HashMap<i64, (f64, Instant)>,
+    usage: HashMap<i64, (f64, Instant)>,
 }
 
 /// A turn, or a position in the queue for one. It ends when this value is dropped.
@@ -47,20 +47,20 @@ pub struct ArchiveTurn {
     turns: Turns,
     account: i64,
     ticket: u64,
-    began: Option<Instant>,
+    start_time: Option<Instant>,
 }
 
 impl TurnState {
     fn used_seconds(&self, account: i64, now: Instant) -> f64 {
-        let Some((seconds, at)) = self.taken.get(&account) else { return 0.0 };
+        let Some((seconds, at)) = self.usage.get(&account) else { return 0.0 };
         seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
     }
 
     /// Returns the next ticket, if a turn is free.
-    fn first(&self, now: Instant) -> Option<u64> {
-        let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
+    fn first_ticket(&self, now: Instant) -> Option<u64> {
+        let ready = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
         let rank = |(ticket, account): &(&u64, &i64)| (self.used_seconds(**account, now), **ticket);
-        let first = able.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
+        let first = ready.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
         first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < MAX_RUNNING)
     }
 }
@@ -79,7 +79,7 @@ impl Turns {
             state.waiting.insert(ticket, account);
             ticket
         };
-        let mut turn = ArchiveTurn { turns: self.clone(), account, ticket, began: None };
+        let mut turn = ArchiveTurn { turns: self.clone(), account, ticket, start_time: None };
         let until = tokio::time::Instant::now() + WAIT_LIMIT;
         loop {
             let changed = self.0.changed.notified();
@@ -88,10 +88,10 @@ impl Turns {
             changed.as_mut().enable();
             {
                 let mut state = self.state();
-                if state.first(Instant::now()) == Some(ticket) {
+                if state.first_ticket(Instant::now()) == Some(ticket) {
                     state.waiting.remove(&ticket);
                     state.running.push(account);
-                    turn.began = Some(Instant::now());
+                    turn.start_time = Some(Instant::now());
                     drop(state);
                     // The turn may now belong to a different account.
                     self.0.changed.notify_waiters();
@@ -111,14 +111,14 @@ impl Drop for ArchiveTurn {
         let mut state = self.turns.state();
         let now = Instant::now();
         state.waiting.remove(&self.ticket);
-        if let Some(began) = self.began {
-            let place = state.running.iter().position(|account| *account == self.account);
-            place.map(|place| state.running.swap_remove(place));
-            if state.taken.len() > MAX_ACCOUNTS {
-                state.taken.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
+        if let Some(began) = self.start_time {
+            let position = state.running.iter().position(|account| *account == self.account);
+            position.map(|place| state.running.swap_remove(place));
+            if state.usage.len() > MAX_ACCOUNTS {
+                state.usage.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
             }
             let seconds = state.used_seconds(self.account, now) + now.saturating_duration_since(began).as_secs_f64();
-            state.taken.insert(self.account, (seconds, now));
+            state.usage.insert(self.account, (seconds, now));
         }
         drop(state);
         self.turns.0.changed.notify_waiters();
@@ -133,7 +133,7 @@ mod tests {
     async fn who_took_least_goes_first_and_nobody_has_two_turns() {
         let turns = Turns::default();
         let now = Instant::now();
-        turns.state().taken.insert(1, (30.0, now));
+        turns.state().usage.insert(1, (30.0, now));
         let (one, two) = (turns.wait(1).await.expect("a turn"), turns.wait(2).await.expect("a turn"));
         let wait = |account| {
             let turns = turns.clone();
@@ -143,7 +143,7 @@ mod tests {
         while turns.state().waiting.len() < 3 {
             tokio::task::yield_now().await;
         }
-        assert_eq!(turns.state().first(now), None, "all places are taken");
+        assert_eq!(turns.state().first_ticket(now), None, "all places are taken");
         drop(two);
         assert_eq!(other.await.expect("no panic").expect("a turn"), 3, "the one who came last took least");
         assert!(!again.is_finished() && !bomber.is_finished(), "an account has one turn");

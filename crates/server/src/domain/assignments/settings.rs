@@ -3,7 +3,7 @@ use crate::domain::assignments::suites::{Suites, is_file_name};
 use crate::{
     calendar,
     db::DbError,
-    late::LatePolicy,
+    late_policy::LatePolicy,
     problem::{Problem, ensure, format_size},
     store::Digest,
     task::{Form, Input, Suite, Task},
@@ -57,8 +57,8 @@ pub struct Settings {
     pub per_hour: u32,
     /// The due date, in milliseconds since 1970, or as a date with its time zone (ISO 8601). Students cannot submit
     /// later than `late_days` after it.
-    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
-    #[schema(schema_with = moment_schema)]
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "read_moment")]
+    #[schema(schema_with = time_schema)]
     pub due_at: Option<i64>,
     /// The number of days after the due date in which uploads are still accepted, with a deduction.
     #[schema(maximum = 365)]
@@ -77,23 +77,23 @@ const REQUIRED_SETTINGS: [&str; 9] =
     ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 
 /// Reads a time, given as a number of milliseconds or as a date.
-pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
+pub(crate) fn read_moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
-    enum Moment {
+    enum TimeValue {
         Number(i64),
         Text(String),
     }
     match Option::deserialize(deserializer)? {
         None => Ok(None),
-        Some(Moment::Number(number)) => Ok(Some(number)),
-        Some(Moment::Text(text)) => calendar::read(&text).map(Some).ok_or_else(|| {
+        Some(TimeValue::Number(number)) => Ok(Some(number)),
+        Some(TimeValue::Text(text)) => calendar::parse(&text).map(Some).ok_or_else(|| {
             Error::custom(format!("{text:?} is not a date with a time zone, such as 2026-12-01T23:59:00+01:00"))
         }),
     }
 }
 
-pub(crate) fn moment_schema() -> Schema {
+pub(crate) fn time_schema() -> Schema {
     let number = |range: RangeInclusive<i64>| {
         ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(*range.start())).maximum(Some(*range.end()))
     };
@@ -109,7 +109,7 @@ pub(crate) fn moment_schema() -> Schema {
 fn zone_schema() -> Schema {
     let names = ObjectBuilder::new().schema_type(Type::String).enum_values(Some(TZ_VARIANTS.map(Tz::name)));
     let null = ObjectBuilder::new().schema_type(Type::Null);
-    let words = "The time zone in which late days end; without it each has 24 hours.";
+    let words = "The time zone in which late days end. Without it, each late day has 24 hours.";
     OneOfBuilder::new().item(names).item(null).description(Some(words)).into()
 }
 
@@ -140,9 +140,9 @@ impl Settings {
     /// # Errors
     ///
     /// Fails if another version of the program wrote them.
-    pub(in crate::domain) fn read(text: &str) -> Result<Self, DbError> {
-        let wrong = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
-        serde_json::from_str(text).map_err(wrong)
+    pub(in crate::domain) fn from_json(text: &str) -> Result<Self, DbError> {
+        let invalid = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
+        serde_json::from_str(text).map_err(invalid)
     }
 
     /// Describes the settings that differ from earlier ones. `suite` is the name of the uploaded suite.
@@ -153,7 +153,7 @@ impl Settings {
         };
         let (new, old) = (fields(self), fields(before));
         let names: BTreeSet<&String> = new.keys().chain(old.keys()).collect();
-        let words = |name: &String| {
+        let describe = |name: &String| {
             let label = name.replace('_', " ");
             match (name.as_str(), new.get(name)) {
                 ("suite_archive", Some(_)) => format!("uploaded suite \"{suite}\""),
@@ -171,7 +171,7 @@ impl Settings {
                 (_, Some(value)) => format!("{label} {value}"),
             }
         };
-        names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
+        names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(describe).collect::<Vec<_>>().join(", ")
     }
 
     /// Returns the settings with changed fields; fields that are null are removed.
@@ -198,13 +198,13 @@ impl Settings {
     }
 
     /// Returns these settings with the grading rules of `other`.
-    pub(in crate::domain) fn graded_as(&self, other: &Self) -> Self {
+    pub(in crate::domain) fn with_grading_of(&self, other: &Self) -> Self {
         let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
         Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
     }
 
     /// Returns the settings as JSON, as the database stores them.
-    pub fn text(&self) -> String {
+    pub fn to_json(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
@@ -214,20 +214,20 @@ impl Settings {
     ///
     /// Fails with a message about the first invalid setting.
     pub fn validate(&self, suites: &Suites) -> Result<Self, Problem> {
-        let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
+        let settings = Self { suite: suites.name_or_default(&self.suite), ..self.clone() };
         settings.check(suites)?;
         Ok(settings)
     }
 
     fn check(&self, suites: &Suites) -> Result<(), Problem> {
-        let one_of = |name: &str, value: &Option<String>, known: &[&str]| match value {
+        let check_choice = |name: &str, value: &Option<String>, known: &[&str]| match value {
             Some(value) if !known.contains(&value.as_str()) => {
                 Err(Problem::invalid(format!("{name} must be one of {}", known.join(", "))))
             }
             _ => Ok(()),
         };
-        one_of("rules", &self.rules, &["parity", "fair", "both"])?;
-        one_of("hints", &self.hints, &["none", "where", "what", "full"])?;
+        check_choice("rules", &self.rules, &["parity", "fair", "both"])?;
+        check_choice("hints", &self.hints, &["none", "where", "what", "full"])?;
         suites.check(&self.suite)?;
         if let Some(archive) = &self.suite_archive {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
@@ -265,12 +265,12 @@ impl Settings {
 
     /// Returns the accepted forms as words for a message.
     pub fn describe_forms(&self) -> String {
-        let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
-        taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
+        let accepted = Form::ALL.into_iter().filter(|form| self.accepts_form(*form));
+        accepted.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }
 
     /// Returns whether submissions in this form are accepted.
-    pub fn takes(&self, form: Form) -> bool {
+    pub fn accepts_form(&self, form: Form) -> bool {
         self.has_form(form.name())
     }
 

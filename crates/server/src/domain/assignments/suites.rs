@@ -56,9 +56,9 @@ impl Suites {
     /// Returns the suite's name for settings. An empty name becomes the grader's default, and a name without a version
     /// gets the newest version, so that later versions of the grader do not change the assignment. If the grader can't
     /// be called, the name stays as it is, and the grader chooses the version.
-    pub(in crate::domain) fn or_default(&self, name: &str) -> String {
-        let is_meant = |entry: &&Entry| if name.is_empty() { entry.default } else { entry.suite == name };
-        self.entries.iter().find(is_meant).map_or(name, |entry| &entry.name).to_owned()
+    pub(in crate::domain) fn name_or_default(&self, name: &str) -> String {
+        let is_selected = |entry: &&Entry| if name.is_empty() { entry.default } else { entry.suite == name };
+        self.entries.iter().find(is_selected).map_or(name, |entry| &entry.name).to_owned()
     }
 
     /// Checks that the grader has a suite with this name.
@@ -66,9 +66,9 @@ impl Suites {
         // The version follows an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
         match () {
-            () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
+            () if !is_name => Err(Problem::invalid(format!("suite must be {}", self.describe()))),
             () if self.entries.is_empty() || self.entries.iter().any(|known| known.name == name) => Ok(()),
-            () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name an existing one")),
+            () => Err(Problem::conflict(format!("suite must be {}", self.describe()), "name an existing one")),
         }
     }
 
@@ -102,11 +102,11 @@ mod tests {
             {"name": "old", "title": "Old", "default": true}]}"#;
         let suites = Suites::read(json).expect("a list");
         assert_eq!(suites.describe(), "new or old");
-        assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
+        assert_eq!((suites.name_or_default("").as_str(), suites.name_or_default("new").as_str()), ("old", "new"));
         let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true},
             {"name": "m@1", "suite": "m", "default": false}]}"#;
         let versions = Suites::read(json).expect("a list");
-        let filled = ["", "m", "m@1", "m@2"].map(|name| versions.or_default(name));
+        let filled = ["", "m", "m@1", "m@2"].map(|name| versions.name_or_default(name));
         assert_eq!(filled, ["m@2", "m@2", "m@1", "m@2"], "what is kept names its version");
         assert!(suites.check("new").is_ok() && suites.check("old").is_ok());
         assert_eq!(suites.check("other").expect_err("unknown").detail, "suite is new or old");

@@ -1,4 +1,4 @@
-//! The example course, for people who try the service. A new server creates it on request.
+//! The example course, with which people try the service. A new server creates it on request.
 use crate::domain::{
     App, NewSecret, Settings,
     accounts::identity::{self, SignInMethod},
@@ -16,7 +16,7 @@ const STUDENT: (&str, &str) = ("student", "A student");
 
 impl App {
     /// Creates the example course, with an assignment and a student, if there is no course yet. Returns a link that
-    /// signs the student in once, unless the example was created before.
+    /// signs the student in once; `None` if the example was created before.
     ///
     /// # Errors
     ///
@@ -35,11 +35,11 @@ impl App {
             let course = admin::make_course(&mut transaction, COURSE).await?;
             let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
                 VALUES (?, ?, ?, 1, ?, {now})";
-            transaction.execute(statement, values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.text()]).await?;
+            transaction.execute(statement, values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.to_json()]).await?;
             let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
                 ON CONFLICT (login) DO NOTHING RETURNING id";
-            let made = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
-            let Some(student) = made else {
+            let created = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
+            let Some(student) = created else {
                 return Err(Problem::conflict("an account `student` already exists", "start it without --example"));
             };
             let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})";

@@ -34,26 +34,26 @@ pub struct MemberLine {
     pub(crate) link: Option<String>,
 }
 
-/// Returns the column that a heading names: "E-mail address" is "email".
-fn column(heading: &str) -> Option<usize> {
+/// Returns the column that a heading names. For example, "E-mail address" names the column "email".
+fn find_column(heading: &str) -> Option<usize> {
     let plain: String = heading.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
 /// Returns the positions of the four columns according to the headings in the first line; `None` if the line has no
 /// headings.
-fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
-    if words.iter().all(|word| column(word).is_none()) {
+fn read_headings(cells: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
+    if cells.iter().all(|word| find_column(word).is_none()) {
         return Ok(None);
     }
-    let mut places = [None; COLUMNS.len()];
-    for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
-        if column(word).is_some_and(|column| places[column].replace(place).is_some()) {
+    let mut columns = [None; COLUMNS.len()];
+    for (place, word) in cells.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
+        if find_column(word).is_some_and(|column| columns[column].replace(place).is_some()) {
             return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
-    match places[1] {
-        Some(_) => Ok(Some(places)),
+    match columns[1] {
+        Some(_) => Ok(Some(columns)),
         None => Err(Problem::invalid("the first line names columns, but not login")),
     }
 }
@@ -72,32 +72,32 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let mut places: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
-    let mut named = Vec::new();
+    let mut columns: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
+    let mut headings = Vec::new();
     let mut logins = BTreeSet::new();
     let mut lines = Vec::new();
     let mut counted = (0, 1);
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|error| Problem::invalid(format!("the table can't be read: {error}")))?;
         let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
-        let words: Vec<String> = record.iter().map(cell).collect();
+        let cells: Vec<String> = record.iter().map(cell).collect();
         if index == 0
-            && let Some(found) = headings(&words)?
+            && let Some(found) = read_headings(&cells)?
         {
-            (places, named) = (found, words);
+            (columns, headings) = (found, cells);
             continue;
         }
-        let is_beside = |(place, word): &(usize, &String)| !word.is_empty() && !places.contains(&Some(*place));
-        let beside = words.iter().enumerate().filter(is_beside);
+        let is_extra = |(place, word): &(usize, &String)| !word.is_empty() && !columns.contains(&Some(*place));
+        let extra = cells.iter().enumerate().filter(is_extra);
         // An unknown heading is an error, so that no column is ignored silently.
         let unused: Option<Vec<String>> =
-            beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
-        let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
+            extra.map(|(place, _)| headings.get(place).filter(|name| !name.is_empty()).cloned()).collect();
+        let field = |column: usize| columns[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
         // The CSV reader counts the second byte of a line end as part of the next line.
-        let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
-        let ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
-        counted = (at, counted.1 + ends(text.as_bytes().get(counted.0..at).unwrap_or_default()));
-        let line = counted.1 + u64::from(text.as_bytes().get(at) == Some(&b'\n'));
+        let offset = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
+        let line_ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
+        counted = (offset, counted.1 + line_ends(text.as_bytes().get(counted.0..offset).unwrap_or_default()));
+        let line = counted.1 + u64::from(text.as_bytes().get(offset) == Some(&b'\n'));
         let (name, login, email) = (field(0), field(1).to_lowercase(), field(2));
         let role =
             Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
@@ -122,8 +122,8 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if the text is not a table, or if a member in it was changed after the event `seen`.
-    pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
+    /// Fails if the text is not a table, or if a member in it was changed after the event `seen_event`.
+    pub async fn import(&self, text: &str, preview: bool, seen_event: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
@@ -133,8 +133,8 @@ impl Staff {
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {
-            self.check_seen(&mut transaction, ("member", None), &format!("{} is ", line.login), seen).await?;
-            match self.add(&mut transaction, &line.login, &line.name, &line.role).await {
+            self.check_last_event(&mut transaction, ("member", None), &format!("{} ", line.login), seen_event).await?;
+            match self.add_member(&mut transaction, &line.login, &line.name, &line.role).await {
                 Ok(link) => line.link = link,
                 Err(problem) if problem.status < 500 => line.error = Some(problem.detail),
                 Err(problem) => return Err(problem),

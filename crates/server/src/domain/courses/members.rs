@@ -56,12 +56,18 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if a name is invalid, or the member was changed after the event `seen`.
-    pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
+    /// Fails if a name is invalid, or the member was changed after the event `seen_event`.
+    pub async fn set_member(
+        &self,
+        login: &str,
+        name: &str,
+        role: &str,
+        seen_event: Option<i64>,
+    ) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
-        let link = self.add(&mut transaction, login, name, role).await?;
+        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), seen_event).await?;
+        let link = self.add_member(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
         Ok(Link { link })
     }
@@ -78,17 +84,17 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Rejects a change if another person has changed the same thing after the event `seen`. The error names that
-    /// person and their change. The search is for a later event with the same kind and assignment, whose text begins
-    /// with `words`.
-    pub(in crate::domain) async fn check_seen(
+    /// Rejects a change if another person has changed the same thing after the event `seen_event`. The error names
+    /// that person and their change. A later event counts if it has the same kind and assignment, and its text begins
+    /// with `beginning`.
+    pub(in crate::domain) async fn check_last_event(
         &self,
         transaction: &mut Transaction,
         (kind, assignment): (&str, Option<i64>),
         beginning: &str,
-        seen: Option<i64>,
+        seen_event: Option<i64>,
     ) -> Result<(), Problem> {
-        let Some(seen) = seen else { return Ok(()) };
+        let Some(seen) = seen_event else { return Ok(()) };
         let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
             WHERE event.course = ? AND event.id > ? AND event.kind = ? AND coalesce(event.assignment, 0) = ?
                AND {strpos}(event.text, ?) = 1
@@ -102,7 +108,7 @@ impl Staff {
         ))
     }
 
-    pub(in crate::domain) async fn add(
+    pub(in crate::domain) async fn add_member(
         &self,
         transaction: &mut Transaction,
         login: &str,
@@ -112,11 +118,11 @@ impl Staff {
         let course = self.course;
         let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO NOTHING RETURNING id";
-        let made = transaction.row(statement, values![login, name, course]).await?;
-        if let Some(made) = made {
+        let created = transaction.row(statement, values![login, name, course]).await?;
+        if let Some(made) = created {
             let account = made.int("id")?;
-            self.add_account(transaction, account, login, role).await?;
-            return Ok(self.link(transaction, account, self.sign_in_method()).await?);
+            self.write_member(transaction, account, login, role).await?;
+            return Ok(self.create_link(transaction, account, self.sign_in_method()).await?);
         }
         let found = transaction
             .one("SELECT id, name, managed_by FROM account WHERE login = ? {for update}", values![login])
@@ -124,37 +130,37 @@ impl Staff {
         let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
         let is_admin = self.account.is_admin;
         let statement = "SELECT role FROM member WHERE course = ? AND account = ?";
-        let was = transaction.row(statement, values![course, account]).await?;
-        let was = was.map(|row| row.text("role")).transpose()?;
-        if was.is_some() && found.text("name")? != name && (is_admin || managed_by == Some(course)) {
+        let old_role = transaction.row(statement, values![course, account]).await?;
+        let old_role = old_role.map(|row| row.text("role")).transpose()?;
+        if old_role.is_some() && found.text("name")? != name && (is_admin || managed_by == Some(course)) {
             transaction.execute("UPDATE account SET name = ? WHERE id = ?", values![name, account]).await?;
-            self.note(transaction, "member", None, &format!("{login} is renamed")).await?;
+            self.log_event(transaction, "member", None, &format!("{login} was renamed")).await?;
         }
-        if was.as_deref() == Some(role) {
+        if old_role.as_deref() == Some(role) {
             return Ok(None);
         }
-        self.check_left(transaction, login, role).await?;
-        let is_of_others = managed_by.is_some_and(|other| other != course);
-        if is_of_others && !is_admin {
+        self.check_remaining(transaction, login, role).await?;
+        let is_managed_elsewhere = managed_by.is_some_and(|other| other != course);
+        if is_managed_elsewhere && !is_admin {
             let detail = format!("{login} is an account of another course; ask an administrator to add it");
             return Err(Problem::not_allowed(detail));
         }
-        let ends_all = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
-        if ends_all {
-            identity::end_all(transaction, account).await?;
-        } else if is_of_others {
-            identity::end_vouched(transaction, account).await?;
+        let ends_access = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
+        if ends_access {
+            identity::end_all_access(transaction, account).await?;
+        } else if is_managed_elsewhere {
+            identity::end_vouched_access(transaction, account).await?;
         }
-        self.add_account(transaction, account, login, role).await?;
-        let is_new = ends_all || is_of_others;
-        if is_new { Ok(self.link(transaction, account, SignInMethod::Own).await?) } else { Ok(None) }
+        self.write_member(transaction, account, login, role).await?;
+        let needs_link = ends_access || is_managed_elsewhere;
+        if needs_link { Ok(self.create_link(transaction, account, SignInMethod::Own).await?) } else { Ok(None) }
     }
 
     /// Checks that the course still has a member of staff if this person's role ends.
-    async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
+    async fn check_remaining(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
-        let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
-        if goes && transaction.one(statement, values![self.course, self.account.id]).await?.int("n")? == 0 {
+        let leaves_staff = login == self.account.login && role != "staff" && !self.account.is_admin;
+        if leaves_staff && transaction.one(statement, values![self.course, self.account.id]).await?.int("n")? == 0 {
             return Err(Problem::conflict("you are the last of the course's staff", "make another member staff first"));
         }
         Ok(())
@@ -166,17 +172,17 @@ impl Staff {
     }
 
     /// Creates a link that signs a person in once.
-    async fn link(
+    async fn create_link(
         &self,
         transaction: &mut Transaction,
         account: i64,
-        way: SignInMethod,
+        method: SignInMethod,
     ) -> Result<Option<String>, DbError> {
-        let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
+        let secret = identity::new_link(transaction, account, Some(self.account.id), method).await?;
         Ok(Some(self.app.welcome_address(&secret)))
     }
 
-    async fn add_account(
+    async fn write_member(
         &self,
         transaction: &mut Transaction,
         account: i64,
@@ -186,22 +192,22 @@ impl Staff {
         let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
         transaction.execute(statement, values![self.course, account, role]).await?;
-        self.note(transaction, "member", None, &format!("{login} is {role}")).await
+        self.log_event(transaction, "member", None, &format!("{login} became {role}")).await
     }
 
     /// Removes a person from the course; their submissions stay.
     ///
     /// # Errors
     ///
-    /// Fails if the person is not a member, or was changed after the event `seen`.
-    pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
+    /// Fails if the person is not a member, or was changed after the event `seen_event`.
+    pub async fn remove_member(&self, login: &str, seen_event: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
-        self.check_left(&mut transaction, login, "out").await?;
+        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), seen_event).await?;
+        self.check_remaining(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let removed = transaction.execute(statement, values![self.course, login]).await?;
         ensure(removed > 0, Problem::not_found("member"))?;
-        self.note(&mut transaction, "member", None, &format!("{login} is out")).await?;
+        self.log_event(&mut transaction, "member", None, &format!("{login} was removed")).await?;
         Ok(transaction.commit().await?)
     }
 
@@ -225,8 +231,8 @@ impl Staff {
                 provider";
             return Err(Problem::not_allowed(detail));
         }
-        let link = self.link(&mut transaction, row.int("id")?, self.sign_in_method()).await?;
-        self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
+        let link = self.create_link(&mut transaction, row.int("id")?, self.sign_in_method()).await?;
+        self.log_event(&mut transaction, "link", None, &format!("created a sign-in link for {login}")).await?;
         transaction.commit().await?;
         Ok(Link { link })
     }

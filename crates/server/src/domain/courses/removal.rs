@@ -38,8 +38,8 @@ const SELECT_BY_COURSE: &str =
     "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
 const SELECT_BY_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
 
-/// Removes the jobs of the submissions that a statement selects, and returns the submissions' numbers as JSON. Jobs
-/// that are just finishing are waited for.
+/// Removes the jobs of the submissions that a statement selects, and returns the submissions' numbers as JSON. Waits
+/// for jobs that are about to finish.
 async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
     let rows = transaction.rows(which, values![value]).await?;
     let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
@@ -52,8 +52,8 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     Ok(ids)
 }
 
-/// Removes all data of the submissions that a statement selects. Transactions that write about one of these submissions
-/// are waited for.
+/// Removes all data of the submissions that a statement selects. Waits for transactions that write about one of these
+/// submissions.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
@@ -78,7 +78,7 @@ async fn remove_in_batches(database: &Database, which: &'static str, value: i64)
     }
 }
 
-async fn run(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
+async fn run_statements(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
     for statement in statements {
         transaction.execute(statement, values![id]).await?;
     }
@@ -97,9 +97,9 @@ impl Staff {
             WHERE submission.id = ? AND assignment.course = ?";
         let found = transaction.row(statement, values![id, self.course]).await?;
         let Some(found) = found else { return Err(Problem::not_found("submission")) };
-        score::note_change(&mut transaction, id).await?;
+        score::queue_changed_scores(&mut transaction, id).await?;
         remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
-        self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
+        self.log_event(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }
 
@@ -124,14 +124,14 @@ impl Staff {
             "DELETE FROM event WHERE assignment = ?",
             "DELETE FROM assignment WHERE id = ?",
         ];
-        run(&mut transaction, &rest, assignment.id).await?;
-        self.note(&mut transaction, "removed", None, &format!("the assignment {slug}")).await?;
+        run_statements(&mut transaction, &rest, assignment.id).await?;
+        self.log_event(&mut transaction, "removed", None, &format!("the assignment {slug}")).await?;
         Ok(transaction.commit().await?)
     }
 }
 
 impl Admin {
-    async fn course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
+    async fn find_course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
         let row = transaction.row("SELECT id FROM course WHERE slug = ?", values![slug]).await?;
         Ok(row.ok_or_else(|| Problem::not_found("course"))?.int("id")?)
     }
@@ -142,7 +142,7 @@ impl Admin {
     /// Fails if there is no such course.
     pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let course = self.course(&mut transaction, slug).await?;
+        let course = self.find_course(&mut transaction, slug).await?;
         drop(transaction);
         remove_in_batches(&self.app.0.database, SOME_OF_COURSE, course).await?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -167,8 +167,8 @@ impl Admin {
             "DELETE FROM event WHERE course = ?",
             "DELETE FROM course WHERE id = ?",
         ];
-        run(&mut transaction, &rest, course).await?;
-        self.note(&mut transaction, "removed", "a course with its assignments, submissions and members").await?;
+        run_statements(&mut transaction, &rest, course).await?;
+        self.log_event(&mut transaction, "removed", "a course with its assignments, submissions and members").await?;
         Ok(transaction.commit().await?)
     }
 
@@ -203,7 +203,7 @@ impl Admin {
             "DELETE FROM sign_in_link WHERE account = ?",
             "DELETE FROM token WHERE account = ?",
         ];
-        run(&mut transaction, &rest, account).await?;
+        run_statements(&mut transaction, &rest, account).await?;
         let nobody = format!("removed-{account}");
         let statement = "UPDATE account SET login = ?, name = 'a removed person', is_admin = 0,
             managed_by = NULL, disabled_at = {now} WHERE id = ?";
@@ -212,37 +212,37 @@ impl Admin {
         let statement = "SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'";
         let rows = transaction.rows(statement, values![login]).await?;
         for row in &rows {
-            let text = without_name(&row.text("text")?, login, &nobody);
+            let text = replace_name(&row.text("text")?, login, &nobody);
             transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
         }
-        self.note(&mut transaction, "removed", "a person with all their data").await?;
+        self.log_event(&mut transaction, "removed", "a person with all their data").await?;
         Ok(transaction.commit().await?)
     }
 }
 
 /// Returns a sentence in which a name is replaced by `other`, wherever the name is a whole word.
-fn without_name(text: &str, name: &str, other: &str) -> String {
-    let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
-    let mut left = text;
-    let mut kept = String::with_capacity(text.len());
-    while let Some(at) = left.find(name) {
-        let (before, after) = (&left[..at], &left[at + name.len()..]);
-        let whole =
-            !kept.chars().chain(before.chars()).next_back().is_some_and(is_of_word) && !after.starts_with(is_of_word);
-        kept.push_str(before);
-        kept.push_str(if whole { other } else { name });
-        left = after;
+fn replace_name(text: &str, name: &str, other: &str) -> String {
+    let is_word_char = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let mut rest = text;
+    let mut replaced = String::with_capacity(text.len());
+    while let Some(at) = rest.find(name) {
+        let (before, after) = (&rest[..at], &rest[at + name.len()..]);
+        let is_whole_word = !replaced.chars().chain(before.chars()).next_back().is_some_and(is_word_char)
+            && !after.starts_with(is_word_char);
+        replaced.push_str(before);
+        replaced.push_str(if is_whole_word { other } else { name });
+        rest = after;
     }
-    kept + left
+    replaced + rest
 }
 
 #[cfg(test)]
 mod tests {
-    use super::without_name;
+    use super::replace_name;
 
     #[test]
     fn only_whole_names_are_replaced() {
-        let without = |text: &str| without_name(text, "ada", "removed-7");
+        let without = |text: &str| replace_name(text, "ada", "removed-7");
         assert_eq!(without("ada is student"), "removed-7 is student");
         assert_eq!(without("a link for ada"), "a link for removed-7");
         assert_eq!(

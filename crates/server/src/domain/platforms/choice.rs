@@ -62,12 +62,12 @@ impl Person {
     /// Fails if the secret is unknown, or belongs to another person.
     pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let Some(place) = launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
+        let pending = launch::find_pending_launch(&mut transaction, self.account.id, secret).await?;
+        let Some(place) = launch::find_course(&mut transaction, pending.platform.id, &pending.arrival).await? else {
             let context = &pending.arrival.context;
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
-            let slug = slug_of(context.label.as_deref().unwrap_or(&title));
+            let slug = propose_slug(context.label.as_deref().unwrap_or(&title));
             let statement = "SELECT course.slug, course.title FROM course
                 JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
                 ORDER BY course.slug";
@@ -94,13 +94,13 @@ impl Person {
     /// # Errors
     ///
     /// Fails if there is no such course, or the name for the new course is taken.
-    pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
+    pub async fn choose_course(&self, secret: &str, existing: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        if launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
+        let pending = launch::find_pending_launch(&mut transaction, self.account.id, secret).await?;
+        if launch::find_course(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
             return Ok(());
         }
-        let course = match known {
+        let course = match existing {
             Some(slug) => {
                 let statement = "SELECT course.id FROM course
                     JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
@@ -117,52 +117,52 @@ impl Person {
             VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id";
         let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
         let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
-        let made = transaction.one(statement, values).await?.int("id")?;
+        let platform_course = transaction.one(statement, values).await?.int("id")?;
         // The platform's message began this session, and ended all other sessions if the account was a student's.
         let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
             ON CONFLICT (platform_course, account) DO NOTHING";
-        transaction.execute(statement, values![made, self.account.id]).await?;
+        transaction.execute(statement, values![platform_course, self.account.id]).await?;
         let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
             ON CONFLICT (course, account) DO NOTHING";
         transaction.execute(statement, values![course, self.account.id, LtiRole::Staff.name(), platform]).await?;
-        let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
+        let text = format!("linked to the course {} on {}", arrival.context.id, pending.platform.name);
         let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
-        view::note(&mut transaction, &entry).await?;
+        view::log_event(&mut transaction, &entry).await?;
         Ok(transaction.commit().await?)
     }
 
-    /// Makes the link open this assignment. If the platform asked for a link, the signed answer is returned.
+    /// Makes the link open this assignment. If the platform requested a link, the signed answer is returned.
     ///
     /// # Errors
     ///
     /// Fails if the person does not teach the course, or it has no such assignment.
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let place = launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await?;
-        let place = place.ok_or_else(|| Problem::not_found("course"))?;
+        let pending = launch::find_pending_launch(&mut transaction, self.account.id, secret).await?;
+        let known_course = launch::find_course(&mut transaction, pending.platform.id, &pending.arrival).await?;
+        let known_course = known_course.ok_or_else(|| Problem::not_found("course"))?;
         let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
-        let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
+        let staff = transaction.row(statement, values![known_course.course, self.account.id]).await?;
         ensure(staff.is_some(), Problem::not_allowed("only the course's staff can do this"))?;
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
                 WHERE course = ? AND slug = ?";
-        let found: Option<Assignment> = transaction.find(statement, values![place.course, slug]).await?;
+        let found: Option<Assignment> = transaction.find(statement, values![known_course.course, slug]).await?;
         let assignment = found.ok_or_else(|| Problem::not_found("assignment"))?;
         let arrival = &pending.arrival;
-        let text = format!("a link of {} leads to {}", pending.platform.name, assignment.slug);
-        let (course, assignment_id) = (Some(place.course), Some(assignment.id));
+        let text = format!("linked {} from {}", assignment.slug, pending.platform.name);
+        let (course, assignment_id) = (Some(known_course.course), Some(assignment.id));
         let entry = Entry::new("platform", self.account.id, &text);
-        view::note(&mut transaction, &Entry { course, assignment: assignment_id, ..entry }).await?;
+        view::log_event(&mut transaction, &Entry { course, assignment: assignment_id, ..entry }).await?;
         let Some(wanted) = &arrival.deep_linking else {
             let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
-            let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
+            let link = launch::make_link(&mut transaction, known_course.id, &resource.id, assignment.id).await?;
             launch::store_score_columns(&mut transaction, link, arrival).await?;
             transaction.commit().await?;
-            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}#done", place.slug, assignment.slug)));
+            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}#done", known_course.slug, assignment.slug)));
         };
         transaction.commit().await?;
         let over_http = self.app.lti.over_http();
-        let Some(address) = pending.platform.service(&wanted.deep_link_return_url, over_http) else {
+        let Some(address) = pending.platform.service_address(&wanted.deep_link_return_url, over_http) else {
             return Err(Problem::refused_launch("the platform's return address is on a host that is not configured"));
         };
         let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
@@ -173,7 +173,7 @@ impl Person {
 }
 
 /// Returns a name for addresses that is made from a title.
-pub fn slug_of(title: &str) -> String {
+pub fn propose_slug(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();
     text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")

@@ -6,7 +6,7 @@ use crate::domain::{
     accounts::{
         identity::{self, SignInMethod},
         newcomer::Newcomer,
-        pending::{BegunSignIn, UNKNOWN_SIGN_IN},
+        pending_sign_in::{StartedSignIn, UNKNOWN_SIGN_IN},
     },
     view::{self, Entry},
 };
@@ -54,14 +54,14 @@ pub struct LaunchTarget {
     /// The secret of the session that begins.
     pub session: NewSecret,
     /// The path of the page on this service.
-    pub to: String,
+    pub path: String,
 }
 
 impl From<Rejection> for Problem {
     fn from(refused: Rejection) -> Self {
         match &refused {
             Rejection::Deployment(_) => {
-                Self::refused_until(refused.to_string(), "tell the server's administrator this deployment")
+                Self::refused_until(refused.to_string(), "ask the server's administrator to add this deployment")
             }
             _ => Self::refused_launch(refused.to_string()),
         }
@@ -112,8 +112,9 @@ impl Visitor {
     /// Fails if there are too many sign-ins, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
         let browser = (&self.secrets, self.secrets.browser.as_ref());
-        let BegunSignIn { state, browser } = self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
-        let nonce = self.app.word_of("nonce", &state).await?;
+        let StartedSignIn { state, browser } =
+            self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
+        let nonce = self.app.compute_secret("nonce", &state).await?;
         let settings = &platform.settings;
         let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
         address
@@ -141,17 +142,17 @@ impl Visitor {
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let pending = self.app.pending_sign_in(state, self.secrets.browser.as_ref(), Problem::refused_launch).await?;
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
-        let number: i64 = pending.at.parse().unwrap_or_default();
+        let number: i64 = pending.service.parse().unwrap_or_default();
         let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;
         let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN_SIGN_IN))?;
-        let nonce = identity::digest(&self.app.word_of("nonce", state).await?);
+        let nonce = identity::digest(&self.app.compute_secret("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
             let detail = "the platform says that you neither learn nor teach in this course";
             return Err(Problem::refused_until(detail, "ask the course's teacher there to make you a student"));
         };
         let mut transaction = self.app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
+        ensure(pending.mark_used(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
         let launched = accept_launch(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
@@ -159,21 +160,21 @@ impl Visitor {
 }
 
 /// A course of a platform, and the course on this server that belongs to it.
-pub(in crate::domain) struct Place {
+pub(in crate::domain) struct KnownCourse {
     pub(in crate::domain) id: i64,
     pub(in crate::domain) course: i64,
     pub(in crate::domain) slug: String,
     pub(in crate::domain) title: String,
 }
 
-from_row! { Place { id, course, slug, title } }
+from_row! { KnownCourse { id, course, slug, title } }
 
 /// Returns the course on this server that belongs to the platform's course from which a person comes.
-pub(in crate::domain) async fn find_place(
+pub(in crate::domain) async fn find_course(
     transaction: &mut Transaction,
     platform: i64,
     arrival: &Arrival,
-) -> Result<Option<Place>, DbError> {
+) -> Result<Option<KnownCourse>, DbError> {
     let statement = "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
         JOIN course ON course.id = platform_course.course
         WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
@@ -189,16 +190,16 @@ async fn accept_launch(
 ) -> Result<LaunchTarget, Problem> {
     let arrival = &message.arrival;
     let staff = role == LtiRole::Staff;
-    let Some(Place { id, course, slug, .. }) = find_place(transaction, platform.id, arrival).await? else {
+    let Some(KnownCourse { id, course, slug, .. }) = find_course(transaction, platform.id, arrival).await? else {
         let detail = "this course is not connected with the grading server yet";
         ensure(
             staff,
             Problem::refused_until(detail, "ask your teacher to open this link once, and then open it again"),
         )?;
-        let account = account(transaction, platform, &message.person).await?;
+        let account = resolve(transaction, platform, &message.person).await?;
         return choose(transaction, platform, arrival, account).await;
     };
-    let account = account(transaction, platform, &message.person).await?;
+    let account = resolve(transaction, platform, &message.person).await?;
     if let Some(memberships) = &arrival.memberships {
         let statement = "UPDATE platform_course SET memberships = ? WHERE id = ?";
         transaction.execute(statement, values![memberships, id]).await?;
@@ -220,10 +221,10 @@ async fn accept_launch(
         Some((link, assignment)) => {
             store_score_columns(transaction, link, arrival).await?;
             if !staff {
-                score::note_arrival(transaction, link, account).await?;
+                score::queue_arrival_score(transaction, link, account).await?;
             }
             let session = identity::begin_session(transaction, account, SignInMethod::Own).await?;
-            Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })
+            Ok(LaunchTarget { session, path: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
         None => Err(Problem::refused_until(
@@ -236,7 +237,7 @@ async fn accept_launch(
 /// Returns the assignment that the link itself names. Staff chose it by deep linking, or wrote it into the link.
 async fn find_named_assignment(
     transaction: &mut Transaction,
-    place: i64,
+    platform_course: i64,
     course: i64,
     arrival: &Arrival,
 ) -> Result<Option<(i64, String)>, DbError> {
@@ -244,21 +245,21 @@ async fn find_named_assignment(
     let found =
         transaction.row("SELECT id FROM assignment WHERE course = ? AND slug = ?", values![course, slug]).await?;
     let Some(found) = found else { return Ok(None) };
-    let link = make_link(transaction, place, &resource.id, found.int("id")?).await?;
+    let link = make_link(transaction, platform_course, &resource.id, found.int("id")?).await?;
     Ok(Some((link, slug.clone())))
 }
 
 /// Stores that a link opens an assignment.
 pub(in crate::domain) async fn make_link(
     transaction: &mut Transaction,
-    place: i64,
+    platform_course: i64,
     resource: &str,
     assignment: i64,
 ) -> Result<i64, DbError> {
     let statement =
         "INSERT INTO platform_link (platform_course, resource, assignment, created_at) VALUES (?, ?, ?, {now})
         ON CONFLICT (platform_course, resource) DO UPDATE SET assignment = excluded.assignment RETURNING id";
-    transaction.one(statement, values![place, resource, assignment]).await?.int("id")
+    transaction.one(statement, values![platform_course, resource, assignment]).await?.int("id")
 }
 
 /// Stores the score columns of a link, as the platform's message names them. A column that this service created is
@@ -290,13 +291,13 @@ async fn choose(
     transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE_LIFETIME]).await?;
     // The choice could make a student's account staff.
     if !identity::is_trusted(transaction, account).await? {
-        identity::end_all(transaction, account).await?;
+        identity::end_all_access(transaction, account).await?;
     }
     let session = identity::begin_session(transaction, account, SignInMethod::Own).await?;
-    Ok(LaunchTarget { session, to: format!("/lti/choose/{}", secret.reveal()) })
+    Ok(LaunchTarget { session, path: format!("/lti/choose/{}", secret.reveal()) })
 }
 
-async fn account(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
+async fn resolve(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
     ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
@@ -328,33 +329,33 @@ pub(in crate::domain) async fn find_or_make(
 pub(in crate::domain) async fn enroll(
     transaction: &mut Transaction,
     platform: i64,
-    place: i64,
+    platform_course: i64,
     course: i64,
     account: i64,
     role: LtiRole,
 ) -> Result<(), DbError> {
     let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
         ON CONFLICT (platform_course, account) DO NOTHING";
-    transaction.execute(statement, values![place, account]).await?;
+    transaction.execute(statement, values![platform_course, account]).await?;
     let statement = "SELECT role, platform FROM member WHERE course = ? AND account = ?";
-    let was = transaction.row(statement, values![course, account]).await?;
-    if let Some(was) = &was
+    let before = transaction.row(statement, values![course, account]).await?;
+    if let Some(was) = &before
         && (was.maybe_int("platform")?.is_none() || was.text("role")? == role.name())
     {
         return Ok(());
     }
     // Links and sessions from before must not get the rights of staff.
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
-        identity::end_all(transaction, account).await?;
+        identity::end_all_access(transaction, account).await?;
     } else {
-        identity::end_vouched(transaction, account).await?;
+        identity::end_vouched_access(transaction, account).await?;
     }
     let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
         ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";
     transaction.execute(statement, values![course, account, role.name(), platform]).await?;
     let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
-    let text = format!("a learning platform made {login} {}", role.name());
-    view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
+    let text = format!("learning platform: {login} became {}", role.name());
+    view::log_event(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 
 /// A choice that a member of staff must make.
@@ -364,7 +365,7 @@ pub(in crate::domain) struct PendingLaunch {
 }
 
 /// Returns the pending choice that belongs to a secret and an account.
-pub(in crate::domain) async fn pending(
+pub(in crate::domain) async fn find_pending_launch(
     transaction: &mut Transaction,
     account: i64,
     secret: &str,

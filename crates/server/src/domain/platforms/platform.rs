@@ -6,7 +6,7 @@ use crate::domain::{
 };
 use crate::{
     db::{DbError, FromRow, Row, read_row},
-    lti::{self, Platform, PlatformWish, score},
+    lti::{self, Platform, PlatformSettings, score},
     problem::{Problem, ensure},
     values,
 };
@@ -15,22 +15,25 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use utoipa::ToSchema;
 
-/// The changes after a course's members were read from its platforms.
+/// The changes to a course's members that its platforms' lists require.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RosterRead {
     /// The number of members that the platforms report.
     pub members: usize,
     /// The number of members who left.
-    pub left: usize,
+    #[serde(rename = "left")]
+    pub leaving_count: usize,
     /// The people who join, such as `Ada Lovelace (ada)`.
-    pub comes: Vec<String>,
+    #[serde(rename = "comes")]
+    pub joining: Vec<String>,
     /// The people who leave, such as `Ada Lovelace (ada)`.
-    pub goes: Vec<String>,
+    #[serde(rename = "goes")]
+    pub leaving: Vec<String>,
 }
 
-/// The use of the list of members that a platform returns.
+/// The effect of reading the list of members from a platform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RosterWish {
+pub enum RosterMode {
     /// Only report who would join and who would leave.
     Preview,
     /// Change the members, unless too many would leave.
@@ -84,29 +87,29 @@ impl Admin {
     /// # Errors
     ///
     /// Fails if a setting is invalid.
-    pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+    pub async fn set_platform(&self, name: &str, settings: &PlatformSettings) -> Result<Platform, Problem> {
         identity::check_slug("a platform's name", name)?;
-        wish.check(self.app.lti.over_http())?;
+        settings.check(self.app.lti.over_http())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
-        let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
-        if let Some(taken) = taken {
+        let registered = transaction.row(statement, values![&settings.issuer, &settings.client_id, name]).await?;
+        if let Some(taken) = registered {
             let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
             return Err(Problem::conflict(detail, "change that one"));
         }
         // Accounts belong to the people of one issuer, so the issuer cannot change.
-        let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
-        if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
+        let before = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
+        if before.is_some_and(|before| before.text("issuer").is_ok_and(|issuer| issuer != settings.issuer)) {
             return Err(Problem::conflict("another issuer is registered under this name", "give it another name"));
         }
-        let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
+        let text = serde_json::to_string(settings).map_err(|_| Problem::fault())?;
         let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
             ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
                disabled_at = NULL
             RETURNING id, name, settings";
-        let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
-        let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
-        self.note(&mut transaction, "platform", &text).await?;
+        let row = transaction.one(statement, values![name, &settings.issuer, &settings.client_id, text]).await?;
+        let text = format!("registered {name}: {}, client {}", settings.issuer, settings.client_id);
+        self.log_event(&mut transaction, "platform", &text).await?;
         transaction.commit().await?;
         Ok(Platform::from_row(&row)?)
     }
@@ -116,12 +119,12 @@ impl Admin {
     /// # Errors
     ///
     /// Fails if there is no platform with this name.
-    pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
+    pub async fn close_platform(&self, name: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
-        let shut = transaction.execute(statement, values![name]).await?;
-        ensure(shut > 0, Problem::not_found("platform"))?;
-        self.note(&mut transaction, "platform", &format!("{name} is shut")).await?;
+        let closed = transaction.execute(statement, values![name]).await?;
+        ensure(closed > 0, Problem::not_found("platform"))?;
+        self.log_event(&mut transaction, "platform", &format!("closed {name}")).await?;
         Ok(transaction.commit().await?)
     }
 
@@ -134,7 +137,7 @@ impl Admin {
     pub async fn new_platform_key(&self) -> Result<(), Problem> {
         lti::new_key(&self.app.0.database).await?;
         let mut transaction = self.app.0.database.begin().await?;
-        self.note(&mut transaction, "platform", "a new key for learning platforms").await?;
+        self.log_event(&mut transaction, "platform", "created a key for learning platforms").await?;
         Ok(transaction.commit().await?)
     }
 }
@@ -148,7 +151,7 @@ impl Staff {
     ///
     /// Fails if no platform offers a list, if a platform does not answer, or if more than a third of the members would
     /// leave without confirmation. Nothing changes then.
-    pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
+    pub async fn read_roster(&self, mode: RosterMode) -> Result<RosterRead, Problem> {
         let app = &self.app;
         let mut transaction = app.0.database.read().await?;
         let statement = "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
@@ -157,36 +160,36 @@ impl Staff {
             JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
             WHERE platform_course.course = ? AND platform_course.memberships IS NOT NULL
             ORDER BY platform_course.id";
-        let places = transaction.rows(statement, values![self.course]).await?;
+        let rows = transaction.rows(statement, values![self.course]).await?;
         drop(transaction);
-        if places.is_empty() {
+        if rows.is_empty() {
             let detail = "this course is connected with no learning platform";
             return Err(Problem::conflict(detail, "open an assignment from the platform once, as a teacher there"));
         }
-        let mut read = RosterRead::default();
-        for row in &places {
+        let mut total = RosterRead::default();
+        for row in &rows {
             let (place, platform) = (row.int("place")?, Platform::from_row(row)?);
             let address = row.text("memberships")?;
-            let told = lti::fetch_roster(&app.lti.client, &app.0.database, &platform, &address).await;
-            let told = told.map_err(|fault| {
+            let people = lti::fetch_roster(&app.lti.client, &app.0.database, &platform, &address).await;
+            let people = people.map_err(|fault| {
                 tracing::warn!(platform = platform.name, %fault, "a roster can't be read");
                 Problem::platform_failed(format!("{}: {fault}", platform.name))
             })?;
-            let one = self.apply_roster(place, &platform, &told, wish).await?;
-            read.members += one.members;
-            read.left += one.left;
-            read.comes.extend(one.comes);
-            read.goes.extend(one.goes);
+            let one = self.apply_roster(place, &platform, &people, mode).await?;
+            total.members += one.members;
+            total.leaving_count += one.leaving_count;
+            total.joining.extend(one.joining);
+            total.leaving.extend(one.leaving);
         }
-        Ok(read)
+        Ok(total)
     }
 
     async fn apply_roster(
         &self,
-        place: i64,
+        platform_course: i64,
         platform: &Platform,
-        told: &[lti::LtiPerson],
-        wish: RosterWish,
+        people: &[lti::LtiPerson],
+        mode: RosterMode,
     ) -> Result<RosterRead, Problem> {
         let course = self.course;
         let mut transaction = self.begin().await?;
@@ -196,10 +199,10 @@ impl Staff {
             let login = row.text("login")?;
             Ok((login.clone(), format!("{} ({login})", row.text("name")?)))
         };
-        let people = |rows: Vec<Row>| rows.iter().map(person).collect::<Result<BTreeMap<_, _>, DbError>>();
-        let before = people(transaction.rows(members, values![course]).await?)?;
+        let read_people = |rows: Vec<Row>| rows.iter().map(person).collect::<Result<BTreeMap<_, _>, DbError>>();
+        let before = read_people(transaction.rows(members, values![course]).await?)?;
         let mut present = BTreeSet::new();
-        for person in told {
+        for person in people {
             let Some(role) = person.role else { continue };
             let account = find_or_make(&mut transaction, platform, person).await?;
             let row =
@@ -209,45 +212,45 @@ impl Staff {
             if row.flag("is_admin")? || row.maybe_int("disabled_at")?.is_some() {
                 continue;
             }
-            enroll(&mut transaction, platform.id, place, course, account, role).await?;
+            enroll(&mut transaction, platform.id, platform_course, course, account, role).await?;
         }
         // If the list is empty, the cause is probably a filter or an error of the platform.
         if present.is_empty() {
             return Ok(RosterRead::default());
         }
         let statement = "SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account";
-        let known = transaction.rows(statement, values![place]).await?;
+        let known = transaction.rows(statement, values![platform_course]).await?;
         for row in &known {
             let account = row.int("account")?;
             if present.contains(&account) || account == self.account.id {
                 continue;
             }
             let statement = "DELETE FROM platform_member WHERE platform_course = ? AND account = ?";
-            transaction.execute(statement, values![place, account]).await?;
+            transaction.execute(statement, values![platform_course, account]).await?;
             let statement = "DELETE FROM member WHERE course = ? AND account = ? AND platform = ?
                 AND NOT EXISTS (SELECT 1 FROM platform_member
                     JOIN platform_course ON platform_course.id = platform_member.platform_course
                     WHERE platform_course.course = member.course AND platform_member.account = member.account)";
             transaction.execute(statement, values![course, account, platform.id]).await?;
         }
-        let after = people(transaction.rows(members, values![course]).await?)?;
+        let after = read_people(transaction.rows(members, values![course]).await?)?;
         let missing_in = |others: &BTreeMap<_, _>, these: &BTreeMap<_, String>| {
             these.iter().filter(|(login, _)| !others.contains_key(*login)).map(|(_, who)| who.clone()).collect()
         };
-        let (comes, goes): (Vec<_>, Vec<_>) = (missing_in(&before, &after), missing_in(&after, &before));
-        let (members, left) = (present.len(), goes.len());
-        let read = RosterRead { members, left, comes, goes };
-        if wish == RosterWish::Preview {
+        let (joining, leaving): (Vec<_>, Vec<_>) = (missing_in(&before, &after), missing_in(&after, &before));
+        let (members, leaving_count) = (present.len(), leaving.len());
+        let read = RosterRead { members, leaving_count, joining, leaving };
+        if mode == RosterMode::Preview {
             return Ok(read);
         }
-        if wish == RosterWish::Apply && left * 3 > before.len() {
+        if mode == RosterMode::Apply && leaving_count * 3 > before.len() {
             return Err(Problem::conflict(
-                format!("{left} of {} members would leave: {}", before.len(), read.goes.join(", ")),
+                format!("{leaving_count} of {} members would leave: {}", before.len(), read.leaving.join(", ")),
                 "check who would be added and removed (preview), then confirm it (confirm)",
             ));
         }
-        let text = format!("{members} members by {}, {left} left", platform.name);
-        self.note(&mut transaction, "roster", None, &text).await?;
+        let text = format!("read {members} members from {}; {leaving_count} left", platform.name);
+        self.log_event(&mut transaction, "roster", None, &text).await?;
         transaction.commit().await?;
         Ok(read)
     }
@@ -283,8 +286,8 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let count = score::send_all(&mut transaction, assignment.id, true).await?;
-        let text = format!("{count} scores of {slug} are sent again");
-        self.note(&mut transaction, "scores", Some(assignment.id), &text).await?;
+        let text = format!("sent {count} scores of {slug} again");
+        self.log_event(&mut transaction, "scores", Some(assignment.id), &text).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(count)
     }

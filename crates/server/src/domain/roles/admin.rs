@@ -1,4 +1,4 @@
-//! Administrators, and what only they can do.
+//! Administrators, and the actions that only they can perform.
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, SignInMethod, TokenInfo},
@@ -50,20 +50,20 @@ pub(in crate::domain) async fn make_course(
     identity::check_title("a title", title)?;
     let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
         ON CONFLICT (slug) DO NOTHING RETURNING id";
-    let made = transaction.row(statement, values![slug, title]).await?;
-    let made = made.ok_or_else(|| Problem::conflict("a course with this name exists", "give it another name"))?;
-    Ok(made.int("id")?)
+    let created = transaction.row(statement, values![slug, title]).await?;
+    let created = created.ok_or_else(|| Problem::conflict("a course with this name exists", "give it another name"))?;
+    Ok(created.int("id")?)
 }
 
 impl Admin {
     /// Writes an entry into the audit log.
-    pub(in crate::domain) async fn note(
+    pub(in crate::domain) async fn log_event(
         &self,
         transaction: &mut Transaction,
         kind: &'static str,
         text: &str,
     ) -> Result<(), DbError> {
-        view::note(transaction, &Entry::new(kind, self.account.id, text)).await
+        view::log_event(transaction, &Entry::new(kind, self.account.id, text)).await
     }
 
     /// Creates a course.
@@ -74,7 +74,7 @@ impl Admin {
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         make_course(&mut transaction, (slug, title)).await?;
-        self.note(&mut transaction, "course", &format!("{slug} ({title})")).await?;
+        self.log_event(&mut transaction, "course", &format!("{slug} ({title})")).await?;
         transaction.commit().await?;
         Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
     }
@@ -96,9 +96,9 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Returns a page of the accounts whose login or name contains `words`, in the order of logins, from the first one
-    /// after `after`. The flag is true if there are more.
-    pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<ListedAccount>, bool), Problem> {
+    /// Returns a page of the accounts whose login or name contains `search`, in the order of logins, from the first one
+    /// after `after`. The flag tells whether there are more.
+    pub async fn accounts_page(&self, search: &str, after: &str) -> Result<(Vec<ListedAccount>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT login, name, is_admin,
                (SELECT string_agg(slug || CASE role WHEN 'staff' THEN ' (staff)' ELSE '' END, ', ')
@@ -108,7 +108,7 @@ impl Admin {
             FROM account WHERE disabled_at IS NULL AND login > ?
                AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
             ORDER BY login LIMIT ?";
-        let (words, most) = (words.trim(), PEOPLE_PER_PAGE + 1);
+        let (words, most) = (search.trim(), PEOPLE_PER_PAGE + 1);
         let values = values![after, words.to_lowercase(), words, most];
         let mut accounts: Vec<ListedAccount> = transaction.all(statement, values).await?;
         let has_more = accounts.len() as i64 == most;
@@ -138,18 +138,18 @@ impl Admin {
         ensure(is_admin || login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}";
-        let was: Option<Account> = transaction.find(statement, values![login]).await?;
+        let before: Option<Account> = transaction.find(statement, values![login]).await?;
         let statement = "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
                disabled_at = NULL
             RETURNING id";
         let account = transaction.one(statement, values![login, name, is_admin]).await?.int("id")?;
-        if was.is_some_and(|was| was.is_admin != is_admin) {
-            identity::end_all(&mut transaction, account).await?;
+        if before.is_some_and(|was| was.is_admin != is_admin) {
+            identity::end_all_access(&mut transaction, account).await?;
         }
         let link = identity::new_link(&mut transaction, account, Some(self.account.id), SignInMethod::Own).await?;
-        let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
-        self.note(&mut transaction, "account", &text).await?;
+        let text = format!("saved {login}{}; created a sign-in link", if is_admin { " as administrator" } else { "" });
+        self.log_event(&mut transaction, "account", &text).await?;
         transaction.commit().await?;
         Ok(Link { link: Some(self.app.welcome_address(&link)) })
     }
@@ -164,8 +164,8 @@ impl Admin {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id";
         let row = transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("account"))?;
-        identity::end_all(&mut transaction, row.int("id")?).await?;
-        self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
+        identity::end_all_access(&mut transaction, row.int("id")?).await?;
+        self.log_event(&mut transaction, "account", &format!("closed {login}")).await?;
         Ok(transaction.commit().await?)
     }
 
@@ -202,7 +202,7 @@ impl Admin {
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL
             RETURNING name";
         let row = transaction.row(statement, values![id]).await?.ok_or_else(|| Problem::not_found("token"))?;
-        self.note(&mut transaction, "worker token", &format!("{} is revoked", row.text("name")?)).await?;
+        self.log_event(&mut transaction, "worker token", &format!("revoked {}", row.text("name")?)).await?;
         Ok(transaction.commit().await?)
     }
 
@@ -227,11 +227,11 @@ impl Admin {
 }
 
 impl App {
-    async fn new_worker_token(&self, name: &str, by: i64) -> Result<NewToken, Problem> {
+    async fn new_worker_token(&self, name: &str, creator: i64) -> Result<NewToken, Problem> {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.0.database.begin().await?;
-        let token = identity::new_token(&mut transaction, None, name, by, SignInMethod::Own).await?;
-        view::note(&mut transaction, &Entry::new("worker token", by, name)).await?;
+        let token = identity::new_token(&mut transaction, None, name, creator, SignInMethod::Own).await?;
+        view::log_event(&mut transaction, &Entry::new("worker token", creator, &format!("created {name}"))).await?;
         transaction.commit().await?;
         Ok(token)
     }

@@ -6,10 +6,10 @@ use crate::domain::{
 use crate::{
     db::{DbError, Transaction},
     problem::Problem,
-    shown::{self, ShownGrade},
     store::{Artifact, Digest, OpenArtifact},
     task::OutputFile,
     values,
+    visible_grade::{self, VisibleGrade},
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use futures_util::StreamExt;
@@ -130,15 +130,15 @@ impl Member {
             return Ok(());
         }
         // Older versions did not separate the hidden parts.
-        let kept = match grade.outcome.shown.take() {
-            Some(kept) => kept,
-            None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
+        let text = match grade.outcome.shown.take() {
+            Some(text) => text,
+            None => visible_grade::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
-        if let Some(shown) = ShownGrade::read(&kept) {
-            shown.hide_from(&mut grade.outcome, STUDENT_PAGE);
-            grade.created_at = shown::round_to_hour(grade.created_at);
+        if let Some(shown) = VisibleGrade::from_text(&text) {
+            shown.limit_to_students(&mut grade.outcome, STUDENT_PAGE);
+            grade.created_at = visible_grade::round_to_hour(grade.created_at);
             submission.is_withheld = true;
-            grade.outcome.shown = Some(kept);
+            grade.outcome.shown = Some(text);
             submission.apply_staff_points();
         }
         Ok(())
@@ -226,7 +226,7 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the store fails.
-    pub async fn beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
+    pub async fn read_beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
         let mut pieces = self.open(artifact).await?.pieces;
         let mut bytes = Vec::new();
         while bytes.len() < most

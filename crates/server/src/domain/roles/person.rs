@@ -39,15 +39,15 @@ impl Person {
 
     /// Returns the session if the person uses a browser. Requests with a token get an error, because a token must not
     /// create rights that outlive it.
-    pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
+    pub(in crate::domain) fn require_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, and neither can a session that it began"))
     }
 
     /// Returns the session if the person signed in recently, so that somebody who finds an open browser cannot create
     /// further ways to sign in.
-    pub(in crate::domain) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
-        let session = self.at_browser()?;
+    pub(in crate::domain) fn require_recent_browser(&self) -> Result<&SessionState, Problem> {
+        let session = self.require_browser()?;
         ensure(session.is_recent, Problem::sign_in_again("you signed in more than twelve hours ago"))?;
         Ok(session)
     }
@@ -86,7 +86,7 @@ impl Person {
     /// Fails if its name is invalid, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
-        let way = if self.lately_at_browser()?.is_vouched { SignInMethod::Vouched } else { SignInMethod::Own };
+        let way = if self.require_recent_browser()?.is_vouched { SignInMethod::Vouched } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![self.account.id]).await?;

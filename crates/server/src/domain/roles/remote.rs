@@ -1,4 +1,4 @@
-//! A worker on another machine. It runs hostile programs, so a submission may control it some day. It can claim jobs,
+//! A worker on another machine. It runs untrusted programs, so a submission may gain control of it. It can claim jobs,
 //! read their files, and report their results, but it sees no courses, no students and no other submissions.
 use crate::domain::App;
 use crate::{
@@ -7,13 +7,13 @@ use crate::{
     store::{Artifact, Digest, OpenArtifact},
     task::{Outcome, Suite, Task},
     values,
-    wire::{ClaimedJob, Manners},
+    wire::{ClaimedJob, WorkerSettings},
     worker::{JobSource, LocalSource, REPORTS, SourceError},
 };
 use std::path::Path;
 
 /// A worker on another machine, identified by its token.
-pub struct Remote {
+pub struct RemoteWorker {
     pub(crate) app: App,
     token: i64,
     worker: String,
@@ -25,11 +25,11 @@ const MAX_FILE_BYTES: u64 = 256 << 20;
 impl From<SourceError> for Problem {
     fn from(error: SourceError) -> Self {
         match error {
-            SourceError::Away(error) => {
+            SourceError::Unavailable(error) => {
                 tracing::warn!(error, "a worker was not answered");
                 Self::unavailable("the database or the store does not answer")
             }
-            SourceError::Refused(error) => Self::invalid(error),
+            SourceError::Rejected(error) => Self::invalid(error),
             SourceError::Dismissed => {
                 Self::unknown_secret("worker token", "ask the server's administrator for a new token")
             }
@@ -37,7 +37,7 @@ impl From<SourceError> for Problem {
     }
 }
 
-impl Remote {
+impl RemoteWorker {
     pub(in crate::domain) fn new(app: App, id: i64, token: &str, name: &str) -> Self {
         let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
         Self { app, token: id, worker: format!("{token}/{plain}") }
@@ -77,13 +77,13 @@ impl Remote {
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
+    pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<WorkerSettings, Problem> {
         let fault = fault.map(|fault| strip_controls(fault, 2000));
         let source = self.source().with_version(strip_controls(version, 60));
         source.tick(slots.min(MAX_SLOTS), fault.as_deref()).await?;
-        let tick_every = self.app.0.policy.tick_every().as_millis();
+        let tick_every = self.app.0.policy.tick_interval().as_millis();
         let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
-        Ok(Manners { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
+        Ok(WorkerSettings { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
     }
 
     /// Extends a lease, and stores the progress of the grading.
@@ -203,8 +203,8 @@ impl Remote {
         // A transaction that takes the job away waits for this one, and this one waits for it.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
-        let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
-        ensure(held.is_some(), Problem::not_found("job of yours"))?;
+        let leased = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
+        ensure(leased.is_some(), Problem::not_found("job of yours"))?;
         let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
         let statement = "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
             ON CONFLICT (job, attempt, digest) DO NOTHING";
@@ -213,12 +213,13 @@ impl Remote {
         Ok(artifact)
     }
 
-    /// Checks that the worker holds the joband returns the job's size limit. This is called before a body is received.
+    /// Checks that the worker holds the job, and returns the job's size limit. This is called before a body is
+    /// received.
     ///
     /// # Errors
     ///
     /// Fails if the worker does not hold the job.
-    pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
+    pub async fn check_lease(&self, lease: &Lease) -> Result<u64, Problem> {
         self.leased_task(lease).await.map(|_| MAX_FILE_BYTES)
     }
 }

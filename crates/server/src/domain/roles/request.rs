@@ -1,6 +1,6 @@
 //! Functions that find the role of a request's sender, from the secrets in the request.
 use crate::domain::{
-    Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
+    Admin, App, Member, Person, RemoteWorker, Secrets, Staff, Visitor,
     accounts::identity::{self, SessionState},
     view::Account,
 };
@@ -13,8 +13,8 @@ use std::time::Instant;
 
 impl App {
     /// Returns the account that the secrets belong to.
-    async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
-        let (account, seen) = match secrets {
+    async fn find_account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
+        let (account, state) = match secrets {
             Secrets { bearer: Some(token), .. } => {
                 let mut transaction = self.0.database.read().await?;
                 (identity::account_of_token(&mut transaction, token).await?.0, None)
@@ -23,13 +23,13 @@ impl App {
                 let mut transaction = self.0.database.read().await?;
                 let found = identity::account_of_session(&mut transaction, session).await?;
                 drop(transaction);
-                let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
-                if seen.is_stale {
+                let (account, state) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
+                if state.is_stale {
                     let mut transaction = self.0.database.begin().await?;
                     identity::extend_session(&mut transaction, session).await?;
                     transaction.commit().await?;
                 }
-                (account, Some(seen))
+                (account, Some(state))
             }
             _ => return Err(Problem::not_signed_in()),
         };
@@ -37,7 +37,7 @@ impl App {
             let most = self.requests_per_minute;
             return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
         }
-        Ok((account, seen))
+        Ok((account, state))
     }
 
     /// Returns the request's sender as a visitor. A visitor need not be signed in.
@@ -51,7 +51,7 @@ impl App {
     ///
     /// Fails if the request is not signed in, or there are too many requests.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
-        let (account, session) = self.account(secrets).await?;
+        let (account, session) = self.find_account(secrets).await?;
         Ok(Person { account, session, app: self.clone() })
     }
 
@@ -60,14 +60,14 @@ impl App {
     /// # Errors
     ///
     /// Fails if the token does not belong to a worker, or is no longer valid.
-    pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
+    pub async fn remote(&self, token: &str, name: &str) -> Result<RemoteWorker, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
         let row = transaction.row(statement, values![identity::digest(token)]).await?;
         let Some(row) = row else {
             return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new token"));
         };
-        Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
+        Ok(RemoteWorker::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }
 }
 

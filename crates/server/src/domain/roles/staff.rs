@@ -1,4 +1,4 @@
-//! The staff of a course, and what only they can do.
+//! The staff of a course, and the actions that only they can perform.
 use crate::domain::{
     Member, Settings,
     accounts::identity,
@@ -81,14 +81,14 @@ impl Deref for Staff {
 
 impl Staff {
     /// Writes an entry into the course's audit log.
-    pub(in crate::domain) async fn note(
+    pub(in crate::domain) async fn log_event(
         &self,
         transaction: &mut Transaction,
         kind: &'static str,
         assignment: Option<i64>,
         text: &str,
     ) -> Result<(), DbError> {
-        view::note(transaction, &self.entry(kind, assignment, text)).await
+        view::log_event(transaction, &self.entry(kind, assignment, text)).await
     }
 
     /// Creates or changes an assignment. If the suite changes, the groups that the new suite hides are withheld, even
@@ -131,25 +131,25 @@ impl Staff {
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
         // The new suite hides groups, or it is unknown whether it does.
-        let hides = change.suite.is_none_or(|suite| suite.hides);
-        let withholds = was_published && hides && !is_same_suite;
-        let values = values![self.course, slug, title, visible, settings.text(), withholds];
+        let hides_groups = change.suite.is_none_or(|suite| suite.hides);
+        let withholds_groups = was_published && hides_groups && !is_same_suite;
+        let values = values![self.course, slug, title, visible, settings.to_json(), withholds_groups];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
         // A new rule for late work can change the points of late submissions, and platforms receive the shown points.
-        if withholds || before.late_policy() != settings.late_policy() {
+        if withholds_groups || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
-        let mut text = format!("{slug} ({title}), {}", if visible { "visible" } else { "hidden" });
+        let mut text = format!("saved {slug} ({title}), {}", if visible { "visible" } else { "hidden" });
         let changes = settings.changes(&before, &suite);
         if !changes.is_empty() {
             text = format!("{text}: {changes}");
         }
-        if withholds {
-            text.push_str("; hidden groups are withheld");
+        if withholds_groups {
+            text.push_str("; withheld hidden groups");
         }
-        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
+        self.log_event(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         transaction.commit().await?;
-        if withholds {
+        if withholds_groups {
             self.app.0.notifier.wake();
         }
         Ok(assignment)
@@ -165,12 +165,12 @@ impl Staff {
         let Some(digest) = &settings.suite_archive else { return Ok(String::new()) };
         let statement = "SELECT name FROM suite WHERE course = ? AND digest = ?";
         let known = transaction.row(statement, values![self.course, digest]).await?;
-        let kept = match digest.parse() {
+        let is_stored = match digest.parse() {
             Ok(digest) if known.is_some() => self.app.0.store.has(&digest).await?,
             _ => false,
         };
         ensure(
-            kept,
+            is_stored,
             Problem::conflict("suite_archive: no suite of this digest was uploaded to this course", "upload it"),
         )?;
         Ok(known.map_or(Ok(String::new()), |row| row.text("name"))?)
@@ -189,8 +189,8 @@ impl Staff {
             "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END, revision = revision + 1 WHERE id = ?
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let row = transaction.one(statement, values![published, assignment.id]).await?;
-        let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
-        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
+        let text = format!("{} the hidden groups of {slug}", if published { "published" } else { "withheld" });
+        self.log_event(&mut transaction, "assignment", Some(assignment.id), &text).await?;
         score::send_all(&mut transaction, assignment.id, false).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(Assignment::from_row(&row)?)

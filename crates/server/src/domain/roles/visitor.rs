@@ -106,7 +106,7 @@ impl Visitor {
     ///
     /// Fails if one of them cannot be written.
     pub async fn check_ready(&self) -> Result<(), Problem> {
-        self.app.0.storage.prove().await
+        self.app.0.storage.check_writable().await
     }
 
     /// Returns the metrics in Prometheus' text format. If the database does not answer, they contain only what the

@@ -1,6 +1,6 @@
 //! The steps of a regrade. One statement handles all submissions, so that each step is complete or has no effect.
 use crate::domain::{
-    submissions::bulk::{payload, statement_pieces},
+    submissions::bulk_enqueue::{payload, statement_pieces},
     view::Assignment,
 };
 use crate::{
@@ -53,7 +53,7 @@ macro_rules! grade_text {
     };
 }
 
-/// Makes the results of a regrade count, because a person requested it, and stores the reason for students. If the
+/// Makes the results of a regrade count, and stores the person who requested it and the reason for students. If the
 /// grader failed on a submission, its old grade stays.
 pub(in crate::domain) async fn apply(
     transaction: &mut Transaction,
@@ -86,7 +86,7 @@ pub(in crate::domain) async fn apply(
         SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
     transaction.execute(statement, values![campaign, JUDGE_ERROR]).await?;
-    score::note_regrade(transaction, campaign).await
+    score::queue_regraded_scores(transaction, campaign).await
 }
 
 /// Cancels the waiting jobs of a regrade.

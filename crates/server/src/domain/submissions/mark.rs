@@ -66,7 +66,7 @@ pub struct Overview {
 from_row! { Overview { students, handed_in, accepted, submissions, requests, regrades, slots } }
 from_row! { Request { submission, number, login, text = "request", requested_at } }
 
-fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
+fn check_text(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
     let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
     if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
@@ -84,15 +84,15 @@ impl Staff {
     /// # Errors
     ///
     /// Fails if there is no such submission, the points are invalid, or the submission was marked after the time
-    /// `seen`.
+    /// `seen_mark`.
     pub async fn mark(
         &self,
         id: i64,
         points: Option<&str>,
         comment: &str,
-        seen: Option<Option<i64>>,
+        seen_mark: Option<Option<i64>>,
     ) -> Result<Submission, Problem> {
-        check_words("a comment", comment, 0)?;
+        check_text("a comment", comment, 0)?;
         let bare = Problem::conflict("different points need a reason", "write it in the comment");
         ensure(points.is_none() || !comment.is_empty(), bare)?;
         let is_number = |text: &str| {
@@ -106,13 +106,13 @@ impl Staff {
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         let marked_at = submission.mark.as_ref().and_then(|mark| mark.marked_at);
-        if let Some(mark) = submission.mark.as_ref().filter(|_| seen.is_some_and(|seen| seen != marked_at)) {
+        if let Some(mark) = submission.mark.as_ref().filter(|_| seen_mark.is_some_and(|seen| seen != marked_at)) {
             let who = mark.by.as_deref().unwrap_or("somebody");
             let detail = format!("{who} has marked it in the meantime: {}", mark.comment);
             return Err(Problem::conflict(detail, "load the page again, and mark it there"));
         }
-        let early = Problem::conflict("it is not graded yet", "wait for its grade");
-        ensure(points.is_none() || submission.grade.is_some(), early)?;
+        let ungraded = Problem::conflict("the submission is not graded yet", "wait for its grade");
+        ensure(points.is_none() || submission.grade.is_some(), ungraded)?;
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
             let what = if points.is_some() { "points by hand" } else { "the grader's points again" };
@@ -129,12 +129,12 @@ impl Staff {
                marked_by = excluded.marked_by, marked_at = excluded.marked_at";
         transaction.execute(statement, values![id, points, comment, self.account.id]).await?;
         let text = match points {
-            Some(points) => format!("{points} points: {comment}"),
-            None => format!("the grader's points: {comment}"),
+            Some(points) => format!("set {points} points: {comment}"),
+            None => format!("restored the grader's points: {comment}"),
         };
         let entry = self.entry("marked", None, &text);
-        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
-        score::note_change(&mut transaction, id).await?;
+        view::log_event(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        score::queue_changed_scores(&mut transaction, id).await?;
         self.app.0.notifier.commit(transaction).await?;
         self.submission(id).await
     }
@@ -187,16 +187,22 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if there is no such student, or the date was changed after the event `seen`.
-    pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
+    /// Fails if there is no such student, or the date was changed after the event `seen_event`.
+    pub async fn extend(
+        &self,
+        slug: &str,
+        login: &str,
+        due_at: Option<i64>,
+        seen_event: Option<i64>,
+    ) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         let wrong = "due_at must be milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00";
         ensure(due_at.is_none_or(calendar::is_plausible), Problem::invalid(wrong))?;
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
-        let beginning = format!("{login} hands in ");
-        self.check_seen(&mut transaction, ("extension", Some(assignment.id)), &beginning, seen).await?;
+        let beginning = format!("{login} ");
+        self.check_last_event(&mut transaction, ("extension", Some(assignment.id)), &beginning, seen_event).await?;
         let statement = "DELETE FROM extension WHERE assignment = ? AND account = ?";
         transaction.execute(statement, values![assignment.id, account]).await?;
         if let Some(due) = due_at {
@@ -206,12 +212,13 @@ impl Staff {
         }
         let statement = "SELECT max(id) AS id FROM submission WHERE assignment = ? AND account = ?";
         if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
-            score::note_change(&mut transaction, last).await?;
+            score::queue_changed_scores(&mut transaction, last).await?;
         }
-        let until =
-            due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::format_minute(due)));
-        let text = format!("{login} hands in {until}");
-        self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
+        let until = due_at.map_or("lost the extension".to_owned(), |due| {
+            format!("got an extension until {} UTC", calendar::format_minute(due))
+        });
+        let text = format!("{login} {until}");
+        self.log_event(&mut transaction, "extension", Some(assignment.id), &text).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }
 }
@@ -223,7 +230,7 @@ impl Member {
     ///
     /// Fails if the submission is not the member's, or the request is empty.
     pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
-        check_words("a request", text, 1)?;
+        check_text("a request", text, 1)?;
         let mut transaction = self.app.0.database.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         ensure(

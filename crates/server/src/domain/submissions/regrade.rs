@@ -61,7 +61,7 @@ pub struct Regrade {
 
 impl Regrade {
     /// Returns the reasons for the change, if all shown changes have the same ones.
-    pub fn shared_why(&self) -> Option<String> {
+    pub fn shared_differences(&self) -> Option<String> {
         let (first, rest) = self.changes.split_first()?;
         rest.iter().all(|change| change.why == first.why).then(|| first.why.join("; "))
     }
@@ -124,12 +124,12 @@ impl Staff {
         )?;
         let statement = "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
             VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id";
-        let values = values![assignment.id, reason, settings.text(), self.account.id];
+        let values = values![assignment.id, reason, settings.to_json(), self.account.id];
         let campaign = transaction.one(statement, values).await?.int("id")?;
-        let of_regrade = Assignment { settings, ..assignment };
-        let count = campaign::enqueue_missing(&mut transaction, campaign, &of_regrade).await?;
-        let text = format!("regrade {campaign}, submissions: {count}; {reason}");
-        self.note(&mut transaction, "regrade", Some(of_regrade.id), &text).await?;
+        let regraded = Assignment { settings, ..assignment };
+        let count = campaign::enqueue_missing(&mut transaction, campaign, &regraded).await?;
+        let text = format!("began regrade {campaign} of {count} submissions: {reason}");
+        self.log_event(&mut transaction, "regrade", Some(regraded.id), &text).await?;
         self.app.0.notifier.commit(transaction).await?;
         self.show_regrade(slug, campaign, None).await
     }
@@ -163,8 +163,8 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let (settings, reason) = self.lock_open(&mut transaction, &assignment, id).await?;
-        let of_regrade = Assignment { settings: settings.clone(), ..assignment };
-        let missing = campaign::enqueue_missing(&mut transaction, id, &of_regrade).await?;
+        let regraded = Assignment { settings: settings.clone(), ..assignment };
+        let missing = campaign::enqueue_missing(&mut transaction, id, &regraded).await?;
         if missing > 0 {
             self.app.0.notifier.commit(transaction).await?;
             return Err(Problem::conflict(
@@ -180,13 +180,13 @@ impl Staff {
         ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
         // Later submissions are graded by these settings.
         let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
-        let before = transaction.one(before, values![of_regrade.id]).await?.text("settings")?;
-        let before = Settings::read(&before)?;
+        let before = transaction.one(before, values![regraded.id]).await?.text("settings")?;
+        let before = Settings::from_json(&before)?;
         let changes = before.grading_changes(&settings).join("; ");
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
-        transaction.execute(statement, values![before.graded_as(&settings).text(), of_regrade.id]).await?;
-        campaign::apply(&mut transaction, id, (self.account.id, self.course, of_regrade.id), &reason).await?;
-        self.decide(transaction, of_regrade.id, id, "applied", &changes).await?;
+        transaction.execute(statement, values![before.with_grading_of(&settings).to_json(), regraded.id]).await?;
+        campaign::apply(&mut transaction, id, (self.account.id, self.course, regraded.id), &reason).await?;
+        self.decide(transaction, regraded.id, id, "applied", &changes).await?;
         self.show_regrade(slug, id, None).await
     }
 
@@ -216,7 +216,7 @@ impl Staff {
         let row = transaction.row(statement, values![id, assignment.id]).await?;
         let row = row.ok_or_else(|| Problem::not_found("regrade"))?;
         match row.text("state")?.as_str() {
-            "open" => Ok((Settings::read(&row.text("settings")?)?, row.text("reason")?)),
+            "open" => Ok((Settings::from_json(&row.text("settings")?)?, row.text("reason")?)),
             state => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
         }
     }
@@ -232,8 +232,8 @@ impl Staff {
     ) -> Result<(), Problem> {
         let statement = "UPDATE campaign SET state = ?, decided_by = ?, decided_at = {now} WHERE id = ?";
         transaction.execute(statement, values![state, self.account.id, id]).await?;
-        let text = format!("regrade {id} {state}; {changes}");
-        self.note(&mut transaction, "regrade", Some(assignment), text.trim_end_matches("; ")).await?;
+        let text = format!("{state} regrade {id}; {changes}");
+        self.log_event(&mut transaction, "regrade", Some(assignment), text.trim_end_matches("; ")).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }
 }
@@ -247,7 +247,7 @@ impl FromRow for Regrade {
                 "discarded" => RegradeState::Discarded,
                 _ => RegradeState::Open,
             },
-            settings: Settings::read(&row.text("settings")?)?,
+            settings: Settings::from_json(&row.text("settings")?)?,
             submissions: 0,
             left: 0,
             failed: 0,
@@ -363,19 +363,19 @@ fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no earlier grade".to_owned()]);
     };
-    let mut why: Vec<String> = list_changed([("version", old_version, row.text("new_version")?)]).collect();
+    let mut differences: Vec<String> = list_changed([("version", old_version, row.text("new_version")?)]).collect();
     let read = |text: &str| serde_json::from_str::<Task>(text).ok();
     if let (Some(old), Some(new)) = (read(&old_task), read(&row.text("new_task")?)) {
-        why.extend(list_changed([
+        differences.extend(list_changed([
             ("suite", old.suite.short(), new.suite.short()),
             ("rules", describe_rules(&old.rules), describe_rules(&new.rules)),
             ("seconds", old.seconds.to_string(), new.seconds.to_string()),
             ("program", old.program, new.program),
         ]));
     }
-    if why.is_empty() {
-        let words = "graded in the same way, with another result: the program's output varies, or it was slow";
-        why.push(words.to_owned());
+    if differences.is_empty() {
+        let unexplained = "graded in the same way, with another result: the program's output varies, or it was slow";
+        differences.push(unexplained.to_owned());
     }
-    Ok(why)
+    Ok(differences)
 }

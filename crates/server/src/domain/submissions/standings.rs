@@ -6,7 +6,7 @@ use crate::domain::{
 };
 use crate::{
     db::{DbError, Row, Transaction},
-    late::LatePolicy,
+    late_policy::LatePolicy,
     problem::Problem,
     values,
 };
@@ -95,17 +95,17 @@ impl Staff {
     ///
     /// Fails if the database does not answer.
     pub async fn short_standings(&self, assignment: &Assignment) -> Result<Arc<Vec<ShortStanding>>, Problem> {
-        let asked = Instant::now();
+        let requested_at = Instant::now();
         let answer = self.app.0.standings.answer_for(assignment.id);
         let mut last = answer.lock().await;
         // An answer whose computation began after the request is recent enough.
-        if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= asked) {
+        if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= requested_at) {
             return Ok(standings.clone());
         }
-        let began = Instant::now();
+        let started_at = Instant::now();
         let mut transaction = self.app.0.database.read().await?;
         let standings = Arc::new(read(&mut transaction, self.course, assignment).await?);
-        *last = Some((began, standings.clone()));
+        *last = Some((started_at, standings.clone()));
         Ok(standings)
     }
 
@@ -128,8 +128,8 @@ impl Staff {
         let mut submissions = HashMap::new();
         let mut transaction = self.app.0.database.read().await?;
         for ids in ids.chunks(PAGE_SIZE) {
-            let read = view::submissions_named(&mut transaction, ids).await?;
-            submissions.extend(read.into_iter().map(|submission| (submission.id, submission)));
+            let page = view::submissions_named(&mut transaction, ids).await?;
+            submissions.extend(page.into_iter().map(|submission| (submission.id, submission)));
         }
         let mut whole = |one: &ShortStanding| Standing {
             login: one.login.clone(),
@@ -155,30 +155,30 @@ impl BestAttempt {
         list: &str,
         by_hand: &HashMap<i64, String>,
         policy: &LatePolicy,
-        own_due: Option<i64>,
+        extended_to: Option<i64>,
     ) -> Option<Self> {
         let mut attempts: Vec<(i64, i64, &str)> = list
             .split(',')
             .filter_map(|attempt| {
-                let mut words = attempt.split(' ');
-                Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?))
+                let mut parts = attempt.split(' ');
+                Some((parts.next()?.parse().ok()?, parts.next()?.parse().ok()?, parts.next()?))
             })
             .collect();
         attempts.sort_unstable();
         let value = |points: &Option<String>| points.as_ref().and_then(|points| points.parse::<f64>().ok());
         attempts.into_iter().fold(None, |best: Option<Self>, (id, came_at, points)| {
-            let late = policy.lateness(own_due, came_at);
+            let late = policy.lateness(extended_to, came_at);
             let is_late = late.is_some();
-            let left = || late.map_or(points.to_owned(), |late| late.left_of(points));
-            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(left));
-            let one = Self { id, points: graded, is_late };
+            let reduced = || late.map_or(points.to_owned(), |late| late.left_of(points));
+            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(reduced));
+            let attempt = Self { id, points: graded, is_late };
             match best {
                 Some(best)
-                    if value(&best.points).is_some_and(|most| value(&one.points).is_none_or(|new| new < most)) =>
+                    if value(&best.points).is_some_and(|most| value(&attempt.points).is_none_or(|new| new < most)) =>
                 {
                     Some(best)
                 }
-                _ => Some(one),
+                _ => Some(attempt),
             }
         })
     }

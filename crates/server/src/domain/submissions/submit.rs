@@ -60,9 +60,9 @@ impl Member {
     /// either no submission, or another upload with the same key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
-        if !assignment.settings.takes(upload.form) {
-            let (taken, found) = (assignment.settings.describe_forms(), upload.form.describe());
-            return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
+        if !assignment.settings.accepts_form(upload.form) {
+            let (accepted, found) = (assignment.settings.describe_forms(), upload.form.describe());
+            return Err(Problem::unusable(format!("this assignment accepts {accepted}, but the file is {found}")));
         }
         // Simultaneous uploads of an account are checked one after another. Otherwise an upload could be stored
         // although an earlier one has used up the limit.
@@ -70,19 +70,19 @@ impl Member {
         // Check before storing, so that the bytes of a rejected or repeated upload are not stored.
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
-        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
+        if let Some(submission) = self.admit_upload(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(SubmitResult { submission, repeated: true });
         }
         drop(transaction);
         let artifact = self.app.0.store.put_file(upload.file).await?;
-        let mut transaction = self.app.0.database.begin_within(CROWD_TIMEOUT).await?;
+        let mut transaction = self.app.0.database.begin_with_timeout(CROWD_TIMEOUT).await?;
         // Uploads of one student are handled one after another, because their numbers are assigned and limits are
         // counted here.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
-        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
+        if let Some(submission) = self.admit_upload(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(SubmitResult { submission, repeated: true });
         }
-        let submission = self.write(&mut transaction, &assignment, upload, &artifact).await?;
+        let submission = self.write_submission(&mut transaction, &assignment, upload, &artifact).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
@@ -93,7 +93,7 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the upload is not allowed.
-    pub async fn check_announced(
+    pub async fn check_announcement(
         &self,
         assignment: &str,
         announced: Option<(Option<&str>, u64)>,
@@ -118,7 +118,7 @@ impl Member {
     }
 
     /// Returns the earlier submission with the same key; `None` if there is none and a new submission is allowed.
-    async fn admit(
+    async fn admit_upload(
         &self,
         transaction: &mut Transaction,
         assignment: &Assignment,
@@ -196,7 +196,7 @@ impl Member {
         Ok(())
     }
 
-    async fn write(
+    async fn write_submission(
         &self,
         transaction: &mut Transaction,
         assignment: &Assignment,
@@ -220,14 +220,14 @@ impl Member {
         let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
         let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
-        score::note_change(transaction, submission).await?;
+        score::queue_changed_scores(transaction, submission).await?;
         if let Some(key) = upload.key {
             let statement =
                 "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)";
             transaction.execute(statement, values![account, key, assignment.id, digest, submission]).await?;
         }
         let entry = self.entry("submitted", Some(assignment.id), upload.name);
-        view::note(transaction, &Entry { submission: Some(submission), ..entry }).await?;
+        view::log_event(transaction, &Entry { submission: Some(submission), ..entry }).await?;
         Ok(submission)
     }
 }

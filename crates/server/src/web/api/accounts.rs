@@ -28,7 +28,8 @@ pub(in crate::web) struct WorkerTokenName {
 /// The name and the rights that an account should have.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct AccountWish {
+#[schema(as = AccountWish)]
+pub(super) struct AccountUpdate {
     #[schema(value_type = Title)]
     name: String,
     #[serde(default)]
@@ -47,22 +48,22 @@ pub(super) async fn show_own_account(person: Person) -> Json<Account> {
     responses((status = 201, body = NewToken)))]
 pub(super) async fn new_token(
     person: Person,
-    Body(wish): Body<TokenName>,
+    Body(input): Body<TokenName>,
 ) -> Result<(StatusCode, Json<NewToken>), Problem> {
-    Ok((StatusCode::CREATED, Json(person.new_token(&wish.name).await?)))
+    Ok((StatusCode::CREATED, Json(person.new_token(&input.name).await?)))
 }
 
 answers! { CREATED:
     /// Creates a token for workers on other machines.
     post "/api/v1/worker-tokens" "administration"
-        new_worker_token(admin: Admin, wish: WorkerTokenName) -> NewToken: admin.new_worker_token(&wish.name);
+        new_worker_token(admin: Admin, input: WorkerTokenName) -> NewToken: admin.new_worker_token(&input.name);
 }
 
 answers! { OK:
     /// Creates an account or changes it, and returns a link that signs in once.
     put "/api/v1/accounts/{login}" "administration"
-        set_account(admin: Admin, { login }, wish: AccountWish) -> Link:
-            admin.set_account(&login, &wish.name, wish.is_admin);
+        set_account(admin: Admin, { login }, input: AccountUpdate) -> Link:
+            admin.set_account(&login, &input.name, input.is_admin);
     /// Lists the tokens of the person who is signed in.
     get "/api/v1/tokens" "accounts" tokens(person: Person) -> Vec<TokenInfo>: person.tokens();
     /// Lists all accounts.
@@ -72,10 +73,10 @@ answers! { OK:
     /// Returns the state of the queue and of the workers.
     get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
     /// Returns the events of the audit log, newest first, 200 at a time.
-    get "/api/v1/audit" "administration" audit(admin: Admin, ?asked: EventQuery) -> Vec<Event>: admin.audit(&asked);
+    get "/api/v1/audit" "administration" audit(admin: Admin, ?query: EventQuery) -> Vec<Event>: admin.audit(&query);
 }
 
-deeds! { NO_CONTENT:
+actions! { NO_CONTENT:
     /// Revokes a token of the person who is signed in.
     delete "/api/v1/tokens/{id}" "accounts"
         revoke_token(person: Person, { id }) -> "Revoked": person.revoke_token(id);

@@ -1,10 +1,11 @@
 //! The API of assignments, and of the results of a whole class.
 use super::super::{
-    input::{AddressParts, Body, QueryInput, SeenEvent, whole_numbers},
-    look, upload,
+    archive_check,
+    input::{AddressParts, Body, QueryInput, SeenEvent, read_whole_numbers},
+    upload,
 };
 use crate::{
-    domain::{Assignment, AssignmentChange, Member, NewSuite, Settings, Staff, Standing, moment, moment_schema},
+    domain::{Assignment, AssignmentChange, Member, NewSuite, Settings, Staff, Standing, read_moment, time_schema},
     problem::{Problem, ensure},
     schema::Title,
     worker,
@@ -28,12 +29,13 @@ const MAX_SUITE_BYTES: u64 = 64 << 20;
 /// is null is removed.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct AssignmentWish {
+#[schema(as = AssignmentWish)]
+pub(super) struct AssignmentInput {
     #[schema(value_type = Title)]
     title: String,
     /// Whether students see the assignment; by default they do not.
     visible: Option<bool>,
-    #[serde(default, deserialize_with = "whole_numbers")]
+    #[serde(default, deserialize_with = "read_whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
     /// The revision on which the change is based. If there is a later revision, the change is rejected. Without this
@@ -48,7 +50,7 @@ pub(in crate::web) struct Revision {
     revision: Option<i64>,
 }
 
-impl AssignmentWish {
+impl AssignmentInput {
     fn change(&self) -> AssignmentChange<'_> {
         let Self { title, visible, revision, .. } = self;
         AssignmentChange { title: Some(title), visible: *visible, revision: *revision, suite: None }
@@ -66,13 +68,14 @@ pub(super) struct GradesFormat {
 #[serde(deny_unknown_fields)]
 pub(super) struct Extension {
     /// The due date in milliseconds since 1970, or as a date with its time zone.
-    #[serde(deserialize_with = "moment")]
-    #[schema(schema_with = moment_schema, required = true)]
+    #[serde(deserialize_with = "read_moment")]
+    #[schema(schema_with = time_schema, required = true)]
     due_at: Option<i64>,
     /// The number of the newest event of the audit log that the sender has seen. If this extension was changed after
     /// it, the request is rejected. Without this field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
-    seen: Option<i64>,
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 /// Uploads a `suite.toml`, or an archive (zip, tar, tar.gz) with one at its top, as the assignment's suite. The groups
@@ -84,17 +87,17 @@ pub(super) struct Extension {
 pub(super) async fn set_suite(
     staff: Staff,
     AddressParts { assignment, .. }: AddressParts,
-    QueryInput(asked): QueryInput<Revision>,
+    QueryInput(query): QueryInput<Revision>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
-    Ok(Json(receive_suite(&staff, &assignment, &asked, request).await?))
+    Ok(Json(receive_suite(&staff, &assignment, &query, request).await?))
 }
 
 /// Receives an archive with a suite, and makes it the assignment's suite.
 pub(in crate::web) async fn receive_suite(
     staff: &Staff,
     assignment: &str,
-    asked: &Revision,
+    query: &Revision,
     request: Request,
 ) -> Result<Assignment, Problem> {
     let received = upload::receive(&staff.app, request, MAX_SUITE_BYTES).await?;
@@ -102,12 +105,12 @@ pub(in crate::web) async fn receive_suite(
     ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
     pack_lone_suite(&received.file)?;
     let folder = tempfile::tempdir_in(&app.incoming)?;
-    look::unpack(staff, &received.file, folder.path()).await?;
+    archive_check::unpack(staff, &received.file, folder.path()).await?;
     let suite = check_scenes(folder.path())?;
     if let Some(grader) = app.grader.as_deref() {
         worker::check_suite(grader, folder.path()).await.map_err(Problem::no_suite)?;
     }
-    staff.set_suite(assignment, &received.file, suite, asked.revision).await
+    staff.set_suite(assignment, &received.file, suite, query.revision).await
 }
 
 /// The maximum size of a `suite.toml`, in bytes.
@@ -139,7 +142,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let suite: toml::Table =
         text.parse().map_err(|error| Problem::no_suite(format!("suite.toml can't be read: {error}")))?;
     let groups = || suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
-    let hides =
+    let hides_groups =
         groups().filter_map(|group| group.get("visibility")?.as_str()).any(|visibility| visibility != "visible");
     let scenes = groups().filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
     for scene in scenes {
@@ -148,7 +151,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
         }
     }
     let name = suite.get("name").and_then(toml::Value::as_str).unwrap_or_default().chars().take(200).collect();
-    Ok(NewSuite { name, hides, ..NewSuite::default() })
+    Ok(NewSuite { name, hides: hides_groups, ..NewSuite::default() })
 }
 
 /// Returns the class's grades as a table (`csv`, one line per student), or all submissions as JSON lines (`jsonl`, one
@@ -159,28 +162,28 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
 pub(super) async fn export(
     staff: Staff,
     AddressParts { assignment, .. }: AddressParts,
-    QueryInput(asked): QueryInput<GradesFormat>,
+    QueryInput(query): QueryInput<GradesFormat>,
 ) -> Result<Response, Problem> {
-    let format = asked.format.as_deref().unwrap_or("csv");
+    let format = query.format.as_deref().unwrap_or("csv");
     let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.slug);
     let (kind, body) = match format {
-        "csv" => ("text/csv; charset=utf-8", HttpBody::from(table(&staff, &assignment).await?)),
-        "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
+        "csv" => ("text/csv; charset=utf-8", HttpBody::from(grades_csv(&staff, &assignment).await?)),
+        "jsonl" => ("application/jsonl; charset=utf-8", submissions_jsonl(staff, &assignment).await?),
         _ => return Err(Problem::invalid("format must be csv or jsonl")),
     };
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }
 
 /// Returns the standings of all students as a table, with the points of groups and the likely mistakes.
-async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
+async fn grades_csv(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     let standings = staff.standings(assignment).await?;
     let grades = standings.iter().filter_map(|one| one.counts.as_ref()?.grade.as_ref());
-    let kept = staff.kept_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
-    super::export_csv(&standings, &kept)
+    let stored = staff.stored_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
+    super::export_csv(&standings, &stored)
 }
 
 /// Returns all submissions as JSON, one per line. They are read from the database while they are sent.
-async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
+async fn submissions_jsonl(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
     let transfer = staff.transfer()?;
     let assignment = staff.assignment(assignment).await?;
     let pages = futures_util::stream::try_unfold((staff, 0), move |(staff, after)| {
@@ -205,8 +208,8 @@ answers! { OK:
     /// Creates an assignment or changes it. Existing grades do not change until a regrade. However, a change of the
     /// rule for late work counts immediately.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
-        set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
-            staff.set_assignment(&assignment, wish.change(), |before| before.with_changes(&wish.settings));
+        set_assignment(staff: Staff, { assignment }, input: AssignmentInput) -> Assignment:
+            staff.set_assignment(&assignment, input.change(), |before| before.with_changes(&input.settings));
     /// Lists the assignments of a course that the person may see.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();
@@ -224,16 +227,16 @@ answers! { OK:
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
 }
 
-deeds! { NO_CONTENT:
+actions! { NO_CONTENT:
     /// Sets a student's own due date.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
-        extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
-            staff.extend(&assignment, &login, wish.due_at, wish.seen);
+        extend(staff: Staff, { assignment, login }, input: Extension) -> "Set":
+            staff.extend(&assignment, &login, input.due_at, input.seen_event);
     /// Removes an assignment with all its submissions. This cannot be undone.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
     /// Removes a student's own due date, so that the assignment's due date applies.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
-        extend_no_more(staff: Staff, { assignment, login }, ?asked: SeenEvent) -> "Set":
-            staff.extend(&assignment, &login, None, asked.event());
+        extend_no_more(staff: Staff, { assignment, login }, ?query: SeenEvent) -> "Set":
+            staff.extend(&assignment, &login, None, query.event());
 }

@@ -12,7 +12,8 @@ use utoipa::{IntoParams, ToSchema};
 /// The name and title of a new course.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::web) struct CourseWish {
+#[schema(as = CourseWish)]
+pub(in crate::web) struct CourseInput {
     #[schema(value_type = Slug)]
     pub(in crate::web) slug: String,
     #[schema(value_type = Title)]
@@ -22,7 +23,8 @@ pub(in crate::web) struct CourseWish {
 /// The name and the role that a member should have.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct MemberWish {
+#[schema(as = MemberWish)]
+pub(super) struct MemberInput {
     /// The member's name. It is used only if the account is new.
     #[schema(value_type = Title)]
     name: String,
@@ -32,7 +34,8 @@ pub(super) struct MemberWish {
     /// The number of the newest event of the audit log that the sender has seen. If this member was changed after it,
     /// the request is rejected. Without this field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
-    seen: Option<i64>,
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 /// The confirmation that a removal requires.
@@ -58,25 +61,25 @@ pub(super) struct Preview {
     responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(
     staff: Staff,
-    QueryInput(asked): QueryInput<Preview>,
+    QueryInput(query): QueryInput<Preview>,
     QueryInput(seen): QueryInput<SeenEvent>,
     PlainBody(table): PlainBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
-    Ok(Json(staff.import(&table, asked.preview, seen.event()).await?))
+    Ok(Json(staff.import(&table, query.preview, seen.event()).await?))
 }
 
 answers! { CREATED:
     /// Creates a course.
     post "/api/v1/courses" "administration"
-        new_course(admin: Admin, wish: CourseWish) -> Course: admin.new_course(&wish.slug, &wish.title);
+        new_course(admin: Admin, input: CourseInput) -> Course: admin.new_course(&input.slug, &input.title);
 }
 
 answers! { OK:
     /// Makes a person a member of the course. If the person has no account, it is created, and the answer contains a
     /// link that signs in once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
-        set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
-            staff.set_member(&login, &wish.name, &wish.role, wish.seen);
+        set_member(staff: Staff, { login }, input: MemberInput) -> Link:
+            staff.set_member(&login, &input.name, &input.role, input.seen_event);
     /// Creates a link that signs a student of the course in once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
@@ -86,19 +89,19 @@ answers! { OK:
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
     /// Returns the events of the course, newest first, 200 at a time.
     get "/api/v1/courses/{course}/audit" "courses"
-        course_audit(staff: Staff, ?asked: EventQuery) -> Vec<Event>: staff.audit(&asked);
+        course_audit(staff: Staff, ?query: EventQuery) -> Vec<Event>: staff.audit(&query);
 }
 
-deeds! { NO_CONTENT:
+actions! { NO_CONTENT:
     /// Removes a course with its assignments, submissions and log. Accounts are kept. This cannot be undone.
     delete "/api/v1/courses/{course}" "administration"
-        remove_course(admin: Admin, { course }, ?asked: Confirm) -> "Removed": async {
+        remove_course(admin: Admin, { course }, ?query: Confirm) -> "Removed": async {
             let other = Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm");
-            ensure(asked.confirm == course, other)?;
+            ensure(query.confirm == course, other)?;
             admin.remove_course(&course).await
         };
     /// Removes a person from the course. Their submissions are kept.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
-        remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":
-            staff.remove_member(&login, asked.event());
+        remove_member(staff: Staff, { login }, ?query: SeenEvent) -> "The member is removed":
+            staff.remove_member(&login, query.event());
 }

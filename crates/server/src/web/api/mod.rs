@@ -5,14 +5,14 @@
 /// of all answers comes before the rows.
 macro_rules! answers {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
-            $(, $wish:ident: $body:ty)?) -> $type:ty: $answer:expr;)*) => {
+        $name:ident($sender:ident: $role:ty $(, { $($at:ident),* })? $(, ?$query:ident: $kind:ty)?
+            $(, $input:ident: $body:ty)?) -> $type:ty: $answer:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag $(, params($query))? $(, request_body = $body)?,
+        #[utoipa::path($method, path = $path, tag = $tag $(, params($kind))? $(, request_body = $body)?,
             responses((status = $status, body = $type)))]
         pub(super) async fn $name(
-            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($asked): QueryInput<$query>)?
-                $(, Body($wish): Body<$body>)?
+            $sender: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($query): QueryInput<$kind>)?
+                $(, Body($input): Body<$body>)?
         ) -> Result<(StatusCode, Json<$type>), Problem> {
             Ok((StatusCode::$status, Json($answer.await?.into())))
         })*
@@ -20,16 +20,16 @@ macro_rules! answers {
 }
 
 /// Declares operations that perform an action and answer with a sentence about the result, one per row.
-macro_rules! deeds {
+macro_rules! actions {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
-            $(, $wish:ident: $body:ty)?) -> $done:tt: $do:expr;)*) => {
+        $name:ident($sender:ident: $role:ty $(, { $($at:ident),* })? $(, ?$query:ident: $kind:ty)?
+            $(, $input:ident: $body:ty)?) -> $done:tt: $do:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag $(, params($query))? $(, request_body = $body)?,
+        #[utoipa::path($method, path = $path, tag = $tag $(, params($kind))? $(, request_body = $body)?,
             responses((status = $status, description = $done)))]
         pub(super) async fn $name(
-            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($asked): QueryInput<$query>)?
-                $(, Body($wish): Body<$body>)?
+            $sender: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($query): QueryInput<$kind>)?
+                $(, Body($input): Body<$body>)?
         ) -> Result<StatusCode, Problem> {
             $do.await?;
             Ok(StatusCode::$status)
@@ -48,9 +48,9 @@ mod workers;
 
 pub(super) use accounts::{TokenName, WorkerTokenName};
 pub(super) use assignments::{Revision, receive_suite};
-pub(super) use courses::CourseWish;
+pub(super) use courses::CourseInput;
 pub use submissions::export_csv;
-pub(super) use submissions::{RequestWish, escape_cell, receive};
+pub(super) use submissions::{ReviewRequest, escape_cell, receive};
 
 use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};

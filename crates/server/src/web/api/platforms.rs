@@ -1,8 +1,8 @@
 //! The API of learning platforms.
 use super::super::input::{AddressParts, Body, QueryInput};
 use crate::{
-    domain::{Admin, RosterRead, RosterWish, ScoreInfo, Staff},
-    lti::{Platform, PlatformWish},
+    domain::{Admin, RosterMode, RosterRead, ScoreInfo, Staff},
+    lti::{Platform, PlatformSettings},
     problem::Problem,
 };
 use axum::{Json, http::StatusCode};
@@ -22,11 +22,11 @@ pub(super) struct RosterParameters {
 }
 
 impl RosterParameters {
-    fn wish(&self) -> RosterWish {
+    fn mode(&self) -> RosterMode {
         match self {
-            Self { preview: true, .. } => RosterWish::Preview,
-            Self { confirm: true, .. } => RosterWish::Confirmed,
-            Self { .. } => RosterWish::Apply,
+            Self { preview: true, .. } => RosterMode::Preview,
+            Self { confirm: true, .. } => RosterMode::Confirmed,
+            Self { .. } => RosterMode::Apply,
         }
     }
 }
@@ -34,10 +34,10 @@ impl RosterParameters {
 answers! { OK:
     /// Reads the members of the course from the connected platforms, and changes the course's members accordingly.
     post "/api/v1/courses/{course}/roster" "courses"
-        roster(staff: Staff, ?asked: RosterParameters) -> RosterRead: staff.read_roster(asked.wish());
+        roster(staff: Staff, ?query: RosterParameters) -> RosterRead: staff.read_roster(query.mode());
     /// Registers a platform, or changes it.
     put "/api/v1/platforms/{name}" "administration"
-        set_platform(admin: Admin, { name }, wish: PlatformWish) -> Platform: admin.set_platform(&name, &wish);
+        set_platform(admin: Admin, { name }, input: PlatformSettings) -> Platform: admin.set_platform(&name, &input);
     /// Lists the registered platforms.
     get "/api/v1/platforms" "administration" platforms(admin: Admin) -> Vec<Platform>: admin.platforms();
     /// Lists the messages to platforms about an assignment's scores.
@@ -45,16 +45,16 @@ answers! { OK:
         scores(staff: Staff, { assignment }) -> Vec<ScoreInfo>: staff.scores(&assignment);
 }
 
-deeds! { ACCEPTED:
+actions! { ACCEPTED:
     /// Sends all scores of an assignment again, even those that platforms have accepted.
     post "/api/v1/courses/{course}/assignments/{assignment}/scores" "assignments"
         send_scores(staff: Staff, { assignment }) -> "The scores are being sent": staff.send_scores(&assignment);
 }
 
-deeds! { NO_CONTENT:
+actions! { NO_CONTENT:
     /// Closes a platform: people can no longer launch from it, and no scores are sent to it.
     delete "/api/v1/platforms/{name}" "administration"
-        shut_platform(admin: Admin, { name }) -> "Shut": admin.shut_platform(&name);
+        shut_platform(admin: Admin, { name }) -> "Shut": admin.close_platform(&name);
     /// Creates a new key with which the service signs messages to platforms. The key is used after an hour.
     post "/api/v1/platform-keys" "administration" new_key(admin: Admin) -> "Made": admin.new_platform_key();
 }

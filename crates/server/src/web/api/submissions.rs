@@ -1,12 +1,12 @@
 //! The API of submissions.
 use super::super::{
-    download,
+    archive_check, download,
     input::{AddressParts, ArrivalTime, Body, QueryInput},
-    look, upload,
+    upload,
 };
 use crate::{
     calendar,
-    domain::{History, KeptResult, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
+    domain::{EnqueuedJobs, History, Member, Staff, Standing, StoredResult, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
     task::round_points,
@@ -52,8 +52,8 @@ pub(super) async fn submit(
     let SubmitResult { submission, repeated } =
         receive(&member, &assignment, request, about.name.as_deref(), about.form.as_deref(), key).await?;
     let status = if repeated { StatusCode::OK } else { StatusCode::CREATED };
-    let place = format!("/api/v1/courses/{}/submissions/{}", member.slug, submission.id);
-    Ok((status, [(header::LOCATION, place)], Json(submission)).into_response())
+    let address = format!("/api/v1/courses/{}/submissions/{}", member.slug, submission.id);
+    Ok((status, [(header::LOCATION, address)], Json(submission)).into_response())
 }
 
 /// Receives an upload and submits it.
@@ -71,21 +71,21 @@ pub(in crate::web) async fn receive(
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
     // The key in a form is not known before the body is read.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
-    let came_at = match member.check_announced(assignment, announced, since).await {
+    let came_at = match member.check_announcement(assignment, announced, since).await {
         Ok(came_at) => came_at,
         Err(problem) => return Err(upload::reject(&member.app, request, most, problem).await),
     };
     let received = upload::receive(&member.app, request, most).await?;
-    let too_long = since.elapsed().saturating_sub(upload::fair_time(std::fs::metadata(&received.file)?.len()));
-    let came_at = came_at.saturating_add(millis(too_long));
-    let form = look::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;
+    let excess = since.elapsed().saturating_sub(upload::allowed_time(std::fs::metadata(&received.file)?.len()));
+    let came_at = came_at.saturating_add(millis(excess));
+    let form = archive_check::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
     // The page's key is combined with the file, because another file from the same page is another submission.
-    let of_page = match &received.key {
+    let page_key = match &received.key {
         Some(key) => Some(format!("{key} {}", crate::store::digest_of_file(&received.file).await?.digest)),
         None => None,
     };
-    let key = of_page.as_deref().or(key);
+    let key = page_key.as_deref().or(key);
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
         return Err(Problem::invalid("a key must be 1 to 200 characters long"));
     }
@@ -95,7 +95,8 @@ pub(in crate::web) async fn receive(
 /// The points and the comment that staff give a submission.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(super) struct MarkWish {
+#[schema(as = MarkWish)]
+pub(super) struct MarkInput {
     /// The points that count instead of the grader's. Null restores the grader's points.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 1_000_000)]
@@ -113,7 +114,8 @@ pub(super) struct MarkWish {
 /// A student's request for a review.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
-pub(in crate::web) struct RequestWish {
+#[schema(as = RequestWish)]
+pub(in crate::web) struct ReviewRequest {
     /// The student's question about the grade.
     #[schema(min_length = 1, max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     pub(in crate::web) text: String,
@@ -125,7 +127,7 @@ pub(in crate::web) struct RequestWish {
 pub(super) async fn report(
     member: Member,
     AddressParts { id, name, .. }: AddressParts,
-    asked: HeaderMap,
+    request_headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
@@ -138,7 +140,7 @@ pub(super) async fn report(
         "sandbox; default-src 'none'"
     };
     let headers = [(header::CONTENT_TYPE, kind), (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static(policy))];
-    Ok((headers, download::send(&member, &asked, &file.artifact).await?).into_response())
+    Ok((headers, download::send(&member, &request_headers, &file.artifact).await?).into_response())
 }
 
 /// Returns the uploaded file.
@@ -147,7 +149,7 @@ pub(super) async fn report(
 pub(super) async fn upload(
     member: Member,
     AddressParts { id, .. }: AddressParts,
-    asked: HeaderMap,
+    request_headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
     // The uploaded file is not trusted, so browsers must save it instead of showing it. Unsafe characters were removed
@@ -161,7 +163,7 @@ pub(super) async fn upload(
         ),
         (header::CONTENT_SECURITY_POLICY, HeaderValue::from_static("sandbox; default-src 'none'")),
     ];
-    Ok((headers, download::send(&member, &asked, &artifact).await?).into_response())
+    Ok((headers, download::send(&member, &request_headers, &artifact).await?).into_response())
 }
 
 /// Returns a class's grades as a table, with a column for each group. Cells that spreadsheets would read as a formula
@@ -170,28 +172,28 @@ pub(super) async fn upload(
 /// # Errors
 ///
 /// Fails only if memory runs out.
-pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Result<String, Problem> {
+pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) -> Result<String, Problem> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let fault = |_| Problem::fault();
+    let failed = |_| Problem::fault();
     let head = "login,name,submissions,submission,verdict,points,max_points,graded_at,likely_mistake";
     let mut groups: Vec<&str> = Vec::new();
-    for (group, _) in kept.values().flat_map(|kept| &kept.parts.groups) {
+    for (group, _) in stored.values().flat_map(|kept| &kept.parts.groups) {
         if !groups.contains(&group.as_str()) {
             groups.push(group);
         }
     }
     let named = groups.iter().map(|group| escape_cell(group));
-    writer.write_record(head.split(',').map(str::to_owned).chain(named)).map_err(fault)?;
+    writer.write_record(head.split(',').map(str::to_owned).chain(named)).map_err(failed)?;
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
         let or_empty = |text: Option<&String>| text.map(round_points).unwrap_or_default();
-        let parts = grade.and_then(|grade| Some(&kept.get(&grade.result)?.parts));
-        let of_group = |name: &&str| {
+        let parts = grade.and_then(|grade| Some(&stored.get(&grade.result)?.parts));
+        let group_points = |name: &&str| {
             let found = parts?.groups.iter().find(|(group, _)| group == name)?;
             found.1.map(round_points)
         };
-        let of_groups = groups.iter().map(|group| of_group(group).unwrap_or_default());
+        let points = groups.iter().map(|group| group_points(group).unwrap_or_default());
         let row = [
             escape_cell(&standing.login),
             escape_cell(&standing.name),
@@ -203,7 +205,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
             grade.map(|grade| calendar::format_iso(grade.created_at)).unwrap_or_default(),
             parts.map(|parts| escape_cell(&parts.mistakes.join(" "))).unwrap_or_default(),
         ];
-        writer.write_record(row.into_iter().chain(of_groups)).map_err(fault)?;
+        writer.write_record(row.into_iter().chain(points)).map_err(failed)?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     String::from_utf8(bytes).map_err(|_| Problem::fault())
@@ -217,24 +219,24 @@ pub(in crate::web) fn escape_cell(text: &str) -> String {
 answers! { ACCEPTED:
     /// Grades a submission again, with the assignment's present settings.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
-        grade_again(staff: Staff, { id }) -> RegradeOrder: staff.grade_again(id);
+        grade_again(staff: Staff, { id }) -> EnqueuedJobs: staff.grade_again(id);
     /// Grades all submissions to an assignment again if the grader failed on them.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
-        grade_errors_again(staff: Staff, { assignment }) -> RegradeOrder: staff.grade_errors_again(Some(&assignment));
+        grade_errors_again(staff: Staff, { assignment }) -> EnqueuedJobs: staff.grade_errors_again(Some(&assignment));
     /// Grades all submissions of a course again if the grader failed on them.
     post "/api/v1/courses/{course}/judge-errors/again" "submissions"
-        grade_all_errors_again(staff: Staff) -> RegradeOrder: staff.grade_errors_again(None);
+        grade_all_errors_again(staff: Staff) -> EnqueuedJobs: staff.grade_errors_again(None);
 }
 
 answers! { OK:
     /// Sets the points of a submission instead of the grader's, with a comment, or restores the grader's points.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
-        mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
+        mark(staff: Staff, { id }, input: MarkInput) -> Submission:
             staff.mark(
                 id,
-                wish.points.map(|points| points.to_string()).as_deref(),
-                &wish.comment,
-                wish.marked_at.map(Some)
+                input.points.map(|points| points.to_string()).as_deref(),
+                &input.comment,
+                input.marked_at.map(Some)
             );
     /// Lists the submissions of the person who is signed in, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
@@ -248,10 +250,10 @@ answers! { OK:
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }
 
-deeds! { NO_CONTENT:
+actions! { NO_CONTENT:
     /// Requests that staff review a submission of the person who is signed in.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
-        request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);
+        request(member: Member, { id }, input: ReviewRequest) -> "Staff sees it": member.request(id, &input.text);
     /// Removes a submission with its grades and reports. This cannot be undone.
     delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
         remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);

@@ -6,11 +6,11 @@ use super::super::{
     upload,
 };
 use crate::{
-    domain::Remote,
+    domain::RemoteWorker,
     problem::{Problem, ensure},
     queue::Lease,
     store::{Artifact, Digest},
-    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Manners, Renewal, SignOfLife},
+    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Renewal, WorkerReport, WorkerSettings},
 };
 use axum::{
     Json,
@@ -22,7 +22,7 @@ use axum::{
 /// Claims the next job. If the queue is empty, the answer is 204.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
     responses((status = 200, body = ClaimedJob), (status = 204, description = "No job")))]
-pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
+pub(super) async fn claim(remote: RemoteWorker) -> Result<Response, Problem> {
     Ok(match remote.claim().await? {
         Some(job) => Json(job).into_response(),
         None => StatusCode::NO_CONTENT.into_response(),
@@ -32,29 +32,29 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 answers! { OK:
     /// Reports that the worker is alive. The answer contains the server's settings for workers.
     post "/api/v1/worker/tick" "workers"
-        tick(remote: Remote, alive: SignOfLife) -> Manners:
+        tick(remote: RemoteWorker, alive: WorkerReport) -> WorkerSettings:
             remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
     /// Extends a lease, and reports the progress of the grading.
     post "/api/v1/worker/renew" "workers"
-        renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
+        renew(remote: RemoteWorker, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
     /// Gives a job back to the queue. This does not count as a failure.
-    post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
+    post "/api/v1/worker/release" "workers" release(remote: RemoteWorker, lease: Lease) -> LeaseAnswer:
         remote.release(&lease);
     /// Reports that the worker failed to grade a job.
     post "/api/v1/worker/fail" "workers"
-        fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
+        fail(remote: RemoteWorker, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
     /// Stores the result of a job, and ends the job.
     post "/api/v1/worker/finish" "workers"
-        finish(remote: Remote, result: FinishedJob) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
+        finish(remote: RemoteWorker, result: FinishedJob) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
 }
 
 fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
     let text = headers.get("fosssim-lease").and_then(|value| value.to_str().ok()).unwrap_or_default();
-    let mut words = text.splitn(3, ':');
-    let mut next = || words.next().unwrap_or_default();
+    let mut parts = text.splitn(3, ':');
+    let mut next = || parts.next().unwrap_or_default();
     match (next().parse(), next().parse(), next()) {
         (Ok(job), Ok(attempt), key) if !key.is_empty() => Ok(Lease { job, attempt, key: key.to_owned() }),
-        _ => Err(Problem::invalid("show the lease: Fosssim-Lease: JOB:ATTEMPT:KEY")),
+        _ => Err(Problem::invalid("the request must contain the lease: Fosssim-Lease: JOB:ATTEMPT:KEY")),
     }
 }
 
@@ -63,7 +63,7 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
     params(("Fosssim-Lease" = String, Header)),
     responses((status = 200, description = "The file's bytes")))]
 pub(super) async fn artifact(
-    remote: Remote,
+    remote: RemoteWorker,
     AddressParts { digest, .. }: AddressParts,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
@@ -79,13 +79,13 @@ pub(super) async fn artifact(
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Artifact)))]
 pub(super) async fn store(
-    remote: Remote,
+    remote: RemoteWorker,
     AddressParts { digest, .. }: AddressParts,
     request: Request,
 ) -> Result<Json<Artifact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
-    let most = remote.check_held(&lease).await?;
+    let most = remote.check_lease(&lease).await?;
     let received = upload::receive(&remote.app, request, most).await?;
     let found = crate::store::digest_of_file(&received.file).await?;
     ensure(found.digest == digest, Problem::invalid("the bytes do not match the digest"))?;

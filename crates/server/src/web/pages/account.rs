@@ -5,8 +5,8 @@ use super::{
         input::{AddressParts, Fields},
     },
     Page, PageFrame,
-    course::{Row, rows},
-    redirect_to, show, text,
+    course::{Row, read_rows},
+    redirect_to, render, text,
 };
 use crate::{
     domain::{Course, CourseMembership, Member, Person, TokenInfo},
@@ -39,7 +39,7 @@ struct HomeCourse {
     /// The course's assignments that accept submissions at present.
     assignments: Vec<Row>,
     /// The number of the course's assignments that are not listed.
-    rest: usize,
+    unlisted: usize,
 }
 
 #[derive(Template)]
@@ -50,10 +50,10 @@ struct AccountPage<'a> {
     is_connected: bool,
     courses: Vec<CourseMembership>,
     tokens: Vec<TokenInfo>,
-    new: Option<String>,
+    new_token: Option<String>,
 }
 
-pub(super) async fn home(person: Person) -> Page {
+pub(super) async fn show_home(person: Person) -> Page {
     let frame = PageFrame::for_account(&person.account);
     let (mut courses, mut others) = (Vec::new(), Vec::new());
     for course in person.courses().await? {
@@ -62,31 +62,31 @@ pub(super) async fn home(person: Person) -> Page {
             continue;
         }
         let member = person.clone().member_of(&course.course.slug).await?;
-        let (assignments, closed): (Vec<Row>, Vec<Row>) = rows(&member).await?.into_iter().partition(Row::is_open);
+        let (assignments, closed): (Vec<Row>, Vec<Row>) = read_rows(&member).await?.into_iter().partition(Row::is_open);
         let is_guest = course.role == "admin";
-        courses.push(HomeCourse { member, is_guest, assignments, rest: closed.len() });
+        courses.push(HomeCourse { member, is_guest, assignments, unlisted: closed.len() });
     }
     let checks_traces = person.app.checker.is_some();
-    show(&Home { frame, name: person.account.name, courses, others, checks_traces })
+    render(&Home { frame, name: person.account.name, courses, others, checks_traces })
 }
 
-async fn page(person: &Person, new: Option<String>) -> Page {
+async fn render_account(person: &Person, new_token: Option<String>) -> Page {
     let frame = PageFrame::for_account(&person.account).with_parent("/account".to_owned(), "Account");
     let (is_connected, courses, tokens) =
         (person.is_connected().await?, person.courses().await?, person.tokens().await?);
-    show(&AccountPage { frame, person, is_connected, courses, tokens, new })
+    render(&AccountPage { frame, person, is_connected, courses, tokens, new_token })
 }
 
-pub(super) async fn account(person: Person) -> Page {
-    page(&person, None).await
+pub(super) async fn show_account(person: Person) -> Page {
+    render_account(&person, None).await
 }
 
 /// Creates a token, and shows its secret. The secret cannot be shown again.
 pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Page {
     let token = person.new_token(form.name.trim()).await?.token;
-    page(&person, Some(token)).await
+    render_account(&person, Some(token)).await
 }
 
-deeds! {
+actions! {
     revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

@@ -1,12 +1,12 @@
 //! The pages for administrators, one per subject.
 use super::{
     super::{
-        api::{CourseWish, WorkerTokenName},
+        api::{CourseInput, WorkerTokenName},
         input::{AddressParts, Fields, QueryInput},
     },
     Page, PageFrame,
     course::People,
-    redirect_to, show, text,
+    redirect_to, render, text,
 };
 use crate::{
     domain::{Admin, App, CourseSize, Event, EventQuery, ListedAccount, Queue, TokenInfo},
@@ -31,10 +31,10 @@ const SECTIONS: [(&str, &str); 5] = [
 struct AdminPage<'a> {
     frame: PageFrame,
     /// The subject that this page shows.
-    part: (&'static str, &'static str),
+    section: (&'static str, &'static str),
     courses: Vec<CourseSize>,
     accounts: Vec<ListedAccount>,
-    look: People,
+    filter: People,
     /// The address of the next page of accounts; `None` on the last page.
     after: Option<String>,
     workers: Vec<TokenInfo>,
@@ -54,23 +54,23 @@ pub(super) struct NewAccount {
     is_admin: Option<String>,
 }
 
-async fn make(admin: &Admin, end: &str, (look, query): (People, EventQuery), secret: Option<String>) -> Page {
-    let part = SECTIONS.into_iter().find(|part| part.0 == end).unwrap_or(SECTIONS[0]);
+async fn make_page(admin: &Admin, end: &str, (filter, query): (People, EventQuery), secret: Option<String>) -> Page {
+    let section = SECTIONS.into_iter().find(|section| section.0 == end).unwrap_or(SECTIONS[0]);
     let frame = PageFrame::for_account(&admin.account)
         .with_parent("/admin".to_owned(), "Administration")
         .with_pages("/admin", &SECTIONS);
-    let frame = frame.with_parent(format!("/admin{}", part.0), part.1);
-    let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
-    let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
+    let frame = frame.with_parent(format!("/admin{}", section.0), section.1);
+    let (accounts, has_more) = admin.accounts_page(&filter.q, &filter.after).await?;
+    let after = filter.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     let (courses, platforms) = (admin.course_sizes().await?, admin.platforms().await?);
     let (workers, queue, events) = (admin.worker_tokens().await?, admin.queue().await?, admin.audit(&query).await?);
     let app = &admin.app;
-    show(&AdminPage {
+    render(&AdminPage {
         frame,
-        part,
+        section,
         courses,
         accounts,
-        look,
+        filter,
         after,
         workers,
         platforms,
@@ -82,27 +82,27 @@ async fn make(admin: &Admin, end: &str, (look, query): (People, EventQuery), sec
     })
 }
 
-pub(super) async fn page(
+pub(super) async fn show_page(
     admin: Admin,
     uri: Uri,
-    QueryInput(look): QueryInput<People>,
+    QueryInput(filter): QueryInput<People>,
     QueryInput(query): QueryInput<EventQuery>,
 ) -> Page {
-    make(&admin, uri.path().trim_start_matches("/admin"), (look, query), None).await
+    make_page(&admin, uri.path().trim_start_matches("/admin"), (filter, query), None).await
 }
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Page {
     let link = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?.link;
-    make(&admin, "/people", Default::default(), link).await
+    make_page(&admin, "/people", Default::default(), link).await
 }
 
 pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Page {
     let token = admin.new_worker_token(form.name.trim()).await?.token;
-    make(&admin, "/workers", Default::default(), Some(token)).await
+    make_page(&admin, "/workers", Default::default(), Some(token)).await
 }
 
-deeds! {
-    new_course(admin: Admin, form: CourseWish):
+actions! {
+    new_course(admin: Admin, form: CourseInput):
         admin.new_course(form.slug.trim(), form.title.trim()) => "/c/{}", form.slug.trim();
     revoke_worker(admin: Admin, { id }): admin.revoke_worker_token(id) => "/admin/workers";
 }

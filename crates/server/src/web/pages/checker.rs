@@ -8,7 +8,7 @@ use axum::{
 };
 
 /// Returns the page. Its own policy is stricter than that of other pages: it allows only the page's WebAssembly module.
-pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
+pub(super) async fn show_page(State(app): State<App>) -> Result<Response, Problem> {
     let page = app.checker.clone().ok_or_else(|| Problem::not_found("page (the grader was built without it)"))?;
     let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();

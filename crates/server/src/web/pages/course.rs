@@ -1,14 +1,14 @@
 //! The pages of a course: its assignments, its members, its queue, and its audit log.
 use super::{
     super::input::{AddressParts, Fields, QueryInput, SeenEvent},
-    Page, PageFrame, redirect_to, show, text,
+    Page, PageFrame, redirect_to, render, text,
 };
 use crate::{
     domain::{
         Assignment, AssignmentChange, Event, EventQuery, Member, MemberInfo, Overview, Queue, Settings, Staff,
         Submission,
     },
-    late::Lateness,
+    late_policy::Lateness,
     problem::Problem,
 };
 use askama::Template;
@@ -23,7 +23,7 @@ struct CoursePage {
     member: Member,
     assignments: Vec<Row>,
     /// Sentences about the space for uploads.
-    kept: Vec<String>,
+    storage_notes: Vec<String>,
 }
 
 /// An assignment as a row in its course's table.
@@ -42,7 +42,7 @@ impl Row {
 
     /// Returns whether the assignment still accepts submissions.
     pub(super) fn is_open(&self) -> bool {
-        if self.overview.is_some() { !self.work.is_over } else { self.work.is_open() }
+        if self.overview.is_some() { !self.work.is_closed } else { self.work.is_open() }
     }
 }
 
@@ -57,9 +57,9 @@ pub(super) struct OwnWork {
     /// The time until which late submissions are accepted, in milliseconds since 1970.
     pub(super) closes_at: Option<i64>,
     /// Whether no submissions are accepted, not even late ones.
-    pub(super) is_over: bool,
+    pub(super) is_closed: bool,
     /// The number of submissions that the student may still make; `None` if it is not limited.
-    pub(super) left: Option<usize>,
+    pub(super) attempts_left: Option<usize>,
     /// All submissions of the student, newest first.
     pub(super) submissions: Vec<Submission>,
     /// The student's submission with the most points; on a tie, the latest.
@@ -72,7 +72,7 @@ impl OwnWork {
         let submissions = member.submissions(&assignment.slug).await?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
         let now = i64::try_from(now).unwrap_or(i64::MAX);
-        let passed = |at: Option<i64>| at.is_some_and(|at| at < now);
+        let has_passed = |at: Option<i64>| at.is_some_and(|at| at < now);
         let policy = assignment.settings.late_policy();
         let closes_at = due.map(|due| policy.closes_at(due));
         let attempts = assignment.settings.attempts as usize;
@@ -81,11 +81,11 @@ impl OwnWork {
         let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
         Ok(Self {
             due,
-            is_late: passed(due),
+            is_late: has_passed(due),
             delay: policy.lateness(due, now),
             closes_at,
-            is_over: passed(closes_at),
-            left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
+            is_closed: has_passed(closes_at),
+            attempts_left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
             submissions,
             best,
         })
@@ -93,7 +93,7 @@ impl OwnWork {
 
     /// Returns whether students may submit to the assignment now.
     pub(super) fn is_open(&self) -> bool {
-        !self.is_over && self.left != Some(0)
+        !self.is_closed && self.attempts_left != Some(0)
     }
 }
 
@@ -104,16 +104,16 @@ struct MembersPage {
     slug: String,
     members: Vec<MemberInfo>,
     students: usize,
-    staff: usize,
-    look: People,
+    staff_count: usize,
+    filter: People,
     /// The address of the next page of members; `None` on the last page.
     after: Option<String>,
     platforms: Vec<String>,
     /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
-    seen: i64,
+    seen_event: i64,
     /// The login of the person whom the last request changed, and a sign-in link if one was created.
-    done: Option<(String, Option<String>)>,
+    update: Option<(String, Option<String>)>,
 }
 
 #[derive(Template)]
@@ -142,11 +142,12 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
-    seen: Option<i64>,
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 /// Returns the assignments of a course as rows of its table.
-pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
+pub(super) async fn read_rows(member: &Member) -> Result<Vec<Row>, Problem> {
     let mut rows = Vec::new();
     for assignment in member.assignments().await? {
         let (work, overview) = (OwnWork::read(member, &assignment).await?, member.overview(&assignment).await?);
@@ -155,16 +156,16 @@ pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
     Ok(rows)
 }
 
-pub(super) async fn course(member: Member) -> Page {
-    let assignments = rows(&member).await?;
-    let place = format!("/c/{}", member.slug);
+pub(super) async fn show_course(member: Member) -> Page {
+    let assignments = read_rows(&member).await?;
+    let address = format!("/c/{}", member.slug);
     let (frame, kept) =
-        (PageFrame::course(&member).with_parent(place, &member.title), member.describe_kept_bytes().await?);
-    show(&CoursePage { frame, member, assignments, kept })
+        (PageFrame::course(&member).with_parent(address, &member.title), member.describe_storage().await?);
+    render(&CoursePage { frame, member, assignments, storage_notes: kept })
 }
 
 /// Creates an assignment that students cannot see yet, with a suite of the grader.
-pub(super) async fn make_assignment(staff: &Staff, slug: &str, title: &str, suite: &str) -> Result<(), Problem> {
+pub(super) async fn create_assignment(staff: &Staff, slug: &str, title: &str, suite: &str) -> Result<(), Problem> {
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("an assignment with this name already exists", "give it another name"));
     }
@@ -191,9 +192,9 @@ const PEOPLE_PER_PAGE: usize = 200;
 impl People {
     /// Returns whether a member matches the filter.
     fn includes(&self, member: &MemberInfo) -> bool {
-        let words = self.q.trim().to_lowercase();
-        let has_words = member.login.contains(&words) || member.name.to_lowercase().contains(&words);
-        has_words && (self.role.is_empty() || member.role == self.role) && member.login > self.after
+        let search = self.q.trim().to_lowercase();
+        let matches_search = member.login.contains(&search) || member.name.to_lowercase().contains(&search);
+        matches_search && (self.role.is_empty() || member.role == self.role) && member.login > self.after
     }
 
     /// Returns the address of the next page, which begins after the login `last`; `None` on the last page.
@@ -203,52 +204,52 @@ impl People {
     }
 }
 
-async fn members_page(staff: &Staff, look: People, done: Option<(String, Option<String>)>) -> Page {
+async fn render_members(staff: &Staff, filter: People, update: Option<(String, Option<String>)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).with_parent(format!("/c/{slug}/members"), "Members");
     // Read the number of the newest event before the members, so that later changes are detected.
-    let seen = staff.last_event().await?;
+    let seen_event = staff.last_event().await?;
     let mut members = staff.members().await?;
     let staff_count = members.iter().filter(|member| member.role == "staff").count();
     let students = members.len() - staff_count;
-    members.retain(|member| look.includes(member));
+    members.retain(|member| filter.includes(member));
     // The database may sort logins differently from this program.
     members.sort_by(|one, other| one.login.cmp(&other.login));
     let has_more = members.len() > PEOPLE_PER_PAGE;
     members.truncate(PEOPLE_PER_PAGE);
-    let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
+    let after = filter.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
     let platforms = staff.platforms().await?;
-    show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, done })
+    render(&MembersPage { frame, slug, members, students, staff_count, filter, after, platforms, seen_event, update })
 }
 
-pub(super) async fn members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
-    members_page(&staff, look, None).await
+pub(super) async fn show_members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
+    render_members(&staff, look, None).await
 }
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen).await?.link;
-    members_page(&staff, People::default(), Some((login.to_owned(), link))).await
+    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen_event).await?.link;
+    render_members(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 
 pub(super) async fn member_link(staff: Staff, AddressParts { login, .. }: AddressParts) -> Page {
     let link = staff.new_link(&login).await?.link;
-    members_page(&staff, People::default(), Some((login, link))).await
+    render_members(&staff, People::default(), Some((login, link))).await
 }
 
-pub(super) async fn audit(staff: Staff, QueryInput(query): QueryInput<EventQuery>) -> Page {
+pub(super) async fn show_audit(staff: Staff, QueryInput(query): QueryInput<EventQuery>) -> Page {
     let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/audit", staff.slug), "Audit log");
-    show(&AuditPage { frame, events: staff.audit(&query).await?, query })
+    render(&AuditPage { frame, events: staff.audit(&query).await?, query })
 }
 
-pub(super) async fn queue(staff: Staff) -> Page {
+pub(super) async fn show_queue(staff: Staff) -> Page {
     let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/queue", staff.slug), "Queue");
-    show(&QueuePage { frame, queue: staff.queue().await? })
+    render(&QueuePage { frame, queue: staff.queue().await? })
 }
 
-deeds! {
+actions! {
     new_assignment(staff: Staff, form: NewAssignment):
-        make_assignment(&staff, form.slug.trim(), form.title.trim(), "")
+        create_assignment(&staff, form.slug.trim(), form.title.trim(), "")
         => "/c/{}/a/{}/settings", staff.slug, form.slug.trim();
     remove_member(staff: Staff, { course, login }, form: SeenEvent):
         staff.remove_member(&login, form.event()) => "/c/{course}/members";

@@ -1,14 +1,13 @@
 //! The pages about a class's grades, and about regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
-    Page, PageFrame, redirect_to, scenes,
-    settings::{Grading, SuiteOption, suites},
-    show,
+    Page, PageFrame, redirect_to, render, scenes,
+    settings::{Grading, SuiteOption, list_suites},
     statistics::{self, Statistics},
     text,
 };
 use crate::{
-    domain::{Assignment, KeptResult, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
+    domain::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing, StoredResult},
     problem::Problem,
 };
 use askama::Template;
@@ -27,22 +26,22 @@ struct GradesPage {
     slug: String,
     assignment: Assignment,
     standings: Vec<Standing>,
-    look: GradesQuery,
+    filter: GradesQuery,
     /// The number of students who match the filter.
-    found: usize,
-    before: Option<String>,
-    after: Option<String>,
+    match_count: usize,
+    previous_page: Option<String>,
+    next_page: Option<String>,
     regrades: Vec<Regrade>,
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
     /// The details that are stored with the results that count, by the numbers of the results.
-    kept: BTreeMap<i64, KeptResult>,
+    stored_results: BTreeMap<i64, StoredResult>,
     /// The wrong scenes of the students on the page. Each has the logins of the students for whom it is wrong.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
     /// Whether the assignment has hidden groups, so that students see less than staff until these are published.
-    hides: bool,
+    hides_groups: bool,
 }
 
 impl GradesPage {
@@ -72,8 +71,8 @@ pub(super) struct GradesQuery {
     #[serde(default)]
     sort: String,
     /// The category of students that the page shows, such as `missing`; empty for all students.
-    #[serde(default)]
-    part: String,
+    #[serde(default, rename = "part")]
+    section: String,
     /// A likely mistake. The page shows only students who made it.
     #[serde(default)]
     mistake: String,
@@ -83,15 +82,16 @@ pub(super) struct GradesQuery {
 impl GradesQuery {
     /// Returns the students on this page, the number of students on all pages, and the addresses of the previous and
     /// the next page.
-    fn page_of_students(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
-        let words = self.q.trim().to_lowercase();
-        let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
-        let is_wanted = |one: &&ShortStanding| {
-            (one.login.contains(&words) || one.name.to_lowercase().contains(&words))
-                && statistics::is_in(one, &self.part)
-                && (self.mistake.is_empty() || made(one))
+    fn select_page(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
+        let search = self.q.trim().to_lowercase();
+        let made_mistake =
+            |one: &ShortStanding| one.counts.as_ref().and_then(statistics::likely_mistake) == Some(&*self.mistake);
+        let is_selected = |one: &&ShortStanding| {
+            (one.login.contains(&search) || one.name.to_lowercase().contains(&search))
+                && statistics::is_in_section(one, &self.section)
+                && (self.mistake.is_empty() || made_mistake(one))
         };
-        let mut standings: Vec<&ShortStanding> = standings.iter().filter(is_wanted).collect();
+        let mut standings: Vec<&ShortStanding> = standings.iter().filter(is_selected).collect();
         let points = |one: &ShortStanding| {
             let points = one.counts.as_ref().and_then(|counts| counts.points.as_ref());
             points.and_then(|points| points.parse::<f64>().ok()).unwrap_or(-1.0)
@@ -103,17 +103,17 @@ impl GradesQuery {
             // The students are already sorted by login.
             _ => {}
         }
-        let found = standings.len();
-        let pages = found.div_ceil(PAGE_SIZE).max(1);
+        let match_count = standings.len();
+        let pages = match_count.div_ceil(PAGE_SIZE).max(1);
         let page = self.page.unwrap_or(1).clamp(1, pages);
         let address = |page: usize| {
             let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
-            query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("part", &self.part);
+            query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("part", &self.section);
             query.append_pair("mistake", &self.mistake).append_pair("page", &page.to_string());
             query.finish()
         };
-        let shown = standings.into_iter().skip((page - 1) * PAGE_SIZE).take(PAGE_SIZE).cloned().collect();
-        (shown, found, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
+        let standings = standings.into_iter().skip((page - 1) * PAGE_SIZE).take(PAGE_SIZE).cloned().collect();
+        (standings, match_count, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
     }
 }
 
@@ -130,7 +130,7 @@ pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     frame.with_parent(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
 
-pub(super) async fn class(
+pub(super) async fn show_class(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
     QueryInput(look): QueryInput<GradesQuery>,
@@ -138,32 +138,32 @@ pub(super) async fn class(
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
     let statistics = Statistics::from_standings(&standings);
-    let (standings, found, [before, after]) = look.page_of_students(&standings);
+    let (standings, found, [before, after]) = look.select_page(&standings);
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
-    let kept = staff.kept_results(&results).await?;
-    show(&GradesPage {
+    let stored = staff.stored_results(&results).await?;
+    render(&GradesPage {
         frame: class_frame(&staff, &assignment),
         slug,
-        look,
-        found,
-        before,
-        after,
+        filter: look,
+        match_count: found,
+        previous_page: before,
+        next_page: after,
         regrades: staff.regrades(&assignment.slug).await?,
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        scenes: scenes::wrong_scenes(&standings, &kept),
-        kept,
+        scenes: scenes::wrong_scenes(&standings, &stored),
+        stored_results: stored,
         standings,
-        suites: suites(&staff, &assignment.settings).await?,
-        hides: staff.is_hidden(&assignment).await?,
+        suites: list_suites(&staff, &assignment.settings).await?,
+        hides_groups: staff.is_hidden(&assignment).await?,
         assignment,
     })
 }
 
-pub(super) async fn begin(
+pub(super) async fn begin_regrade(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewRegrade>,
@@ -176,12 +176,12 @@ pub(super) async fn begin(
 pub(super) async fn show_regrade(
     staff: Staff,
     AddressParts { course: slug, assignment, id, .. }: AddressParts,
-    QueryInput(asked): QueryInput<ListStart>,
+    QueryInput(query): QueryInput<ListStart>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;
+    let regrade = staff.show_regrade(&assignment.slug, id, query.after).await?;
     let address = format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug);
-    show(&RegradePage {
+    render(&RegradePage {
         frame: class_frame(&staff, &assignment).with_parent(address, "Regrade"),
         slug,
         assignment,
@@ -189,7 +189,7 @@ pub(super) async fn show_regrade(
     })
 }
 
-deeds! {
+actions! {
     publish(staff: Staff, { course, assignment }):
         staff.publish(&assignment, true) => "/c/{course}/a/{assignment}/class";
     withhold(staff: Staff, { course, assignment }):

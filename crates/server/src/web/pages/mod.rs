@@ -3,13 +3,13 @@
 
 /// Declares handlers that perform an action and then redirect to a page, one per row. A row has the name, the role, the
 /// parts of the address and the form; then the action; and last the next page.
-macro_rules! deeds {
+macro_rules! actions {
     ($($(#[doc = $doc:literal])*
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
+        $name:ident($sender:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
             $do:expr => $to:literal $(, $part:expr)*;)*) => {
         $($(#[doc = $doc])*
         pub(super) async fn $name(
-            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
+            $sender: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
             Ok(redirect_to(&format!($to $(, $part)*)))
@@ -19,8 +19,8 @@ macro_rules! deeds {
 
 mod account;
 mod administration;
-mod beside;
 mod checker;
+mod comparison;
 mod course;
 mod grades;
 mod platform;
@@ -64,25 +64,25 @@ macro_rules! pages {
 }
 
 pages! {
-    get "/" => account::home,
-    get "/check" => checker::page,
-    get "/sign-in" => sign_in::page,
-    post "/sign-in" => sign_in::by_token,
-    get "/sign-in/provider" => provider::begin,
-    get "/sign-in/provider/answer" => provider::answer,
-    get "/welcome/{secret}" => sign_in::welcome,
-    post "/welcome/{secret}" => sign_in::by_link,
+    get "/" => account::show_home,
+    get "/check" => checker::show_page,
+    get "/sign-in" => sign_in::show_page,
+    post "/sign-in" => sign_in::sign_in_by_token,
+    get "/sign-in/provider" => provider::begin_sign_in,
+    get "/sign-in/provider/answer" => provider::accept,
+    get "/welcome/{secret}" => sign_in::show_welcome,
+    post "/welcome/{secret}" => sign_in::sign_in_by_link,
     post "/sign-out" => sign_in::sign_out,
-    get "/account" => account::account,
-    get "/account/provider" => provider::connect,
+    get "/account" => account::show_account,
+    get "/account/provider" => provider::begin_connection,
     post "/account/provider/remove" => provider::disconnect,
     post "/account/tokens" => account::new_token,
     post "/account/tokens/{id}/revoke" => account::revoke_token,
-    get "/admin" => administration::page,
-    get "/admin/people" => administration::page,
-    get "/admin/platforms" => administration::page,
-    get "/admin/workers" => administration::page,
-    get "/admin/log" => administration::page,
+    get "/admin" => administration::show_page,
+    get "/admin/people" => administration::show_page,
+    get "/admin/platforms" => administration::show_page,
+    get "/admin/workers" => administration::show_page,
+    get "/admin/log" => administration::show_page,
     post "/admin/courses" => administration::new_course,
     post "/admin/accounts" => administration::set_account,
     post "/admin/accounts/{login}/remove" => removal::remove_person,
@@ -92,58 +92,58 @@ pages! {
     post "/admin/platforms" => platform::set_platform,
     post "/admin/platforms/{name}/shut" => platform::shut_platform,
     post "/admin/platform-keys" => platform::new_key,
-    get "/lti/login" => platform::login,
-    post "/lti/login" => platform::login,
-    post "/lti/launch" => platform::launch,
-    get "/lti/keys.json" => platform::keys,
-    get "/lti/configuration.json" => platform::configuration,
-    get "/lti/choose/{secret}" => platform::choose,
+    get "/lti/login" => platform::begin_login,
+    post "/lti/login" => platform::begin_login,
+    post "/lti/launch" => platform::accept,
+    get "/lti/keys.json" => platform::send_keys,
+    get "/lti/configuration.json" => platform::send_configuration,
+    get "/lti/choose/{secret}" => platform::show_choice,
     post "/lti/choose/{secret}/course" => platform::choose_course,
     post "/lti/choose/{secret}/assignment" => platform::choose_assignment,
-    get "/c/{course}" => course::course,
+    get "/c/{course}" => course::show_course,
     post "/c/{course}/assignments" => course::new_assignment,
     post "/c/{course}/remove" => removal::remove_course,
-    get "/c/{course}/members" => course::members,
+    get "/c/{course}/members" => course::show_members,
     post "/c/{course}/members" => course::set_member,
-    get "/c/{course}/members/import" => student::import,
+    get "/c/{course}/members/import" => student::show_import,
     post "/c/{course}/members/import" => student::import_table,
     post "/c/{course}/members/table" => student::import_file,
     post "/c/{course}/members/{login}/remove" => course::remove_member,
     post "/c/{course}/members/{login}/link" => course::member_link,
     post "/c/{course}/members/roster" => platform::read_roster,
-    get "/c/{course}/audit" => course::audit,
-    get "/c/{course}/queue" => course::queue,
-    get "/c/{course}/a/{assignment}" => submission::assignment,
+    get "/c/{course}/audit" => course::show_audit,
+    get "/c/{course}/queue" => course::show_queue,
+    get "/c/{course}/a/{assignment}" => submission::show_assignment,
     post "/c/{course}/a/{assignment}" => submission::submit,
     post "/c/{course}/a/{assignment}/remove" => removal::remove_assignment,
-    get "/c/{course}/a/{assignment}/settings" => settings::page,
-    post "/c/{course}/a/{assignment}/settings" => settings::set,
+    get "/c/{course}/a/{assignment}/settings" => settings::show_page,
+    post "/c/{course}/a/{assignment}/settings" => settings::save,
     post "/c/{course}/a/{assignment}/suite" => settings::set_suite,
-    get "/c/{course}/a/{assignment}/class" => grades::class,
+    get "/c/{course}/a/{assignment}/class" => grades::show_class,
     post "/c/{course}/a/{assignment}/publish" => grades::publish,
     post "/c/{course}/a/{assignment}/withhold" => grades::withhold,
     post "/c/{course}/a/{assignment}/scores" => platform::send_scores,
     post "/c/{course}/a/{assignment}/judge-errors" => grades::grade_errors_again,
     post "/c/{course}/s/{id}/again" => submission::grade_again,
-    post "/c/{course}/a/{assignment}/regrades" => grades::begin,
+    post "/c/{course}/a/{assignment}/regrades" => grades::begin_regrade,
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
     post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
-    get "/c/{course}/s/{id}" => submission::submission,
-    get "/c/{course}/s/{id}/beside" => beside::page,
-    get "/c/{course}/a/{assignment}/students/{login}" => student::page,
+    get "/c/{course}/s/{id}" => submission::show_submission,
+    get "/c/{course}/s/{id}/beside" => comparison::show_page,
+    get "/c/{course}/a/{assignment}/students/{login}" => student::show,
     post "/c/{course}/a/{assignment}/students/{login}/extension" => student::extend,
     post "/c/{course}/s/{id}/mark" => student::mark,
     post "/c/{course}/s/{id}/request" => student::request,
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
-    get "/static/style.css" => style,
-    get "/static/page.js" => script,
-    get "/static/report.js" => viewer,
+    get "/static/style.css" => send_style,
+    get "/static/page.js" => send_script,
+    get "/static/report.js" => send_report_script,
 }
 
-async fn style() -> Response {
+async fn send_style() -> Response {
     // Pages use the style sheet of reports, followed by rules for pages only.
-    constant(
+    static_response(
         "text/css; charset=utf-8",
         concat!(
             include!("../../../../render/src/plot/style.in"),
@@ -154,16 +154,16 @@ async fn style() -> Response {
 }
 
 /// Returns the script of reports, for reports that are shown on pages.
-async fn viewer() -> Response {
-    constant("text/javascript; charset=utf-8", include!("../../../../report/src/page/viewer/viewer.in"))
+async fn send_report_script() -> Response {
+    static_response("text/javascript; charset=utf-8", include!("../../../../report/src/page/viewer/viewer.in"))
 }
 
-async fn script() -> Response {
-    constant("text/javascript; charset=utf-8", include_str!("static/page.js"))
+async fn send_script() -> Response {
+    static_response("text/javascript; charset=utf-8", include_str!("static/page.js"))
 }
 
-fn constant(kind: &'static str, text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
+fn static_response(media_type: &'static str, text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, media_type), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
 /// The parts that every page has around its content. The default is the frame for a visitor.
@@ -173,7 +173,7 @@ pub(super) struct PageFrame {
     login: Option<String>,
     is_admin: bool,
     /// The pages above this one in the hierarchy, by address and title.
-    way: Vec<(String, String)>,
+    parents: Vec<(String, String)>,
     /// The pages about the same subject, by address and title.
     tabs: Vec<(String, &'static str)>,
     /// The address of the shown page among `tabs`.
@@ -186,27 +186,27 @@ impl PageFrame {
     }
 
     fn course(member: &Member) -> Self {
-        let place = format!("/c/{}", member.slug);
-        let frame = Self::for_account(&member.account).with_parent(place.clone(), &member.title);
+        let address = format!("/c/{}", member.slug);
+        let frame = Self::for_account(&member.account).with_parent(address.clone(), &member.title);
         let pages = [("", "Assignments"), ("/members", "Members"), ("/queue", "Queue"), ("/audit", "Audit log")];
-        if member.is_staff { frame.with_pages(&place, &pages) } else { frame }
+        if member.is_staff { frame.with_pages(&address, &pages) } else { frame }
     }
 
     /// Returns the frame for the page of an assignment.
     fn assignment(member: &Member, assignment: &Assignment) -> Self {
-        let place = format!("/c/{}/a/{}", member.slug, assignment.slug);
+        let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
         let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
         let frame = Self::course(member);
         match member.is_staff {
-            true => frame.with_parent(format!("{place}/class"), &assignment.title).with_pages(&place, &pages),
-            false => frame.with_parent(place, &assignment.title),
+            true => frame.with_parent(format!("{address}/class"), &assignment.title).with_pages(&address, &pages),
+            false => frame.with_parent(address, &assignment.title),
         }
     }
 
-    /// Adds the pages about the same subject. `place` is the beginning of their addresses, and `pages` has the rest of
+    /// Adds the pages about the same subject. `base` is the beginning of their addresses, and `pages` has the rest of
     /// each address and the title.
-    fn with_pages(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
-        self.tabs = pages.iter().map(|(end, title)| (format!("{place}{end}"), *title)).collect();
+    fn with_pages(mut self, base: &str, pages: &[(&str, &'static str)]) -> Self {
+        self.tabs = pages.iter().map(|(end, title)| (format!("{base}{end}"), *title)).collect();
         self
     }
 
@@ -214,8 +214,8 @@ impl PageFrame {
     fn with_parent(mut self, address: String, title: &str) -> Self {
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
-        } else if self.way.last().is_none_or(|(last, _)| *last != address) {
-            self.way.push((address, title.to_owned()));
+        } else if self.parents.last().is_none_or(|(last, _)| *last != address) {
+            self.parents.push((address, title.to_owned()));
         }
         self
     }
@@ -225,7 +225,7 @@ impl PageFrame {
 type Page = Result<Html<String>, Problem>;
 
 /// Renders a template.
-fn show(template: &impl Template) -> Page {
+fn render(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
         tracing::error!(%error, "a page could not be rendered");
         Problem::fault()
@@ -249,12 +249,12 @@ struct ProblemPage {
 /// Turns rejections of pages into pages. A person who is not signed in gets the sign-in page.
 pub(super) async fn show_problems(State(app): State<App>, request: Request, next: Next) -> Response {
     let (head, body) = request.into_parts();
-    let kept = head.clone();
-    as_page(next.run(Request::from_parts(head, body)).await, kept, &app).await
+    let parts = head.clone();
+    rejection_page(next.run(Request::from_parts(head, body)).await, parts, &app).await
 }
 
 /// Turns rejections of other addresses into pages if the request comes from a browser.
-pub(super) async fn show_others(State(app): State<App>, request: Request, next: Next) -> Response {
+pub(super) async fn show_other_problems(State(app): State<App>, request: Request, next: Next) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
     if !is_browser || request.uri().path().starts_with("/api/") {
@@ -264,7 +264,7 @@ pub(super) async fn show_others(State(app): State<App>, request: Request, next: 
 }
 
 /// Returns the answer for addresses without a page.
-pub(super) async fn no_page() -> Problem {
+pub(super) async fn missing_page() -> Problem {
     Problem::not_found("page")
 }
 
@@ -286,7 +286,7 @@ async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
 
 /// Returns a rejection as a page; other answers do not change. A person who is not signed in is redirected to the
 /// sign-in page, and from there back to the page.
-async fn as_page(mut response: Response, mut head: Parts, app: &App) -> Response {
+async fn rejection_page(mut response: Response, mut head: Parts, app: &App) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     let status = problem.status();
     if head.method == Method::GET && status == StatusCode::UNAUTHORIZED {
@@ -300,7 +300,7 @@ async fn as_page(mut response: Response, mut head: Parts, app: &App) -> Response
     let back = from.map(|from| sign_in::local_path(&from[url::Position::BeforePath..]).to_owned());
     // If the server fails, the error page reads nothing from the database.
     let frame = if status.is_server_error() { None } else { find_frame(&mut head, app).await };
-    match show(&ProblemPage { frame: frame.unwrap_or_default(), problem, back }) {
+    match render(&ProblemPage { frame: frame.unwrap_or_default(), problem, back }) {
         Ok(page) => {
             let mut answer = (status, page).into_response();
             if let Some(after) = response.headers_mut().remove(header::RETRY_AFTER) {

@@ -1,16 +1,17 @@
 //! The pages for people who come from a learning platform.
 use super::{
     super::{
+        identification::browser_cookie,
         input::{AddressParts, Fields},
-        who::browser_cookie,
     },
-    Page, PageFrame, course, redirect_to, show, sign_in, text,
+    Page, PageFrame, course, redirect_to, render, sign_in, text,
 };
 use crate::{
     domain::{
-        Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Suites, Visitor, slug_of,
+        Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterMode, RosterRead, Staff, Suites, Visitor,
+        propose_slug,
     },
-    lti::{PlatformWish, scope},
+    lti::{PlatformSettings, scope},
     problem::Problem,
 };
 use askama::Template;
@@ -53,7 +54,7 @@ struct AnswerPage {
 struct RosterPage {
     frame: PageFrame,
     slug: String,
-    read: RosterRead,
+    changes: RosterRead,
     is_done: bool,
 }
 
@@ -93,10 +94,10 @@ pub(super) struct NewPlatform {
 /// Returns the cookie with the browser's secret during a sign-in from a platform. Browsers must send it with requests
 /// from other sites, because the platform's answer is such a request. In a frame, many browsers isolate or drop the
 /// cookie, so people cannot sign in there.
-fn browser_word(app: &App, word: &str) -> String {
+fn browser_cookie_of(app: &App, secret: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
-    format!("{}={word}; Path=/; HttpOnly; Max-Age=600; {rest}", browser_cookie(secure))
+    format!("{}={secret}; Path=/; HttpOnly; Max-Age=600; {rest}", browser_cookie(secure))
 }
 
 fn with_policy(mut response: Response, policy: &str) -> Response {
@@ -106,7 +107,7 @@ fn with_policy(mut response: Response, policy: &str) -> Response {
     response
 }
 
-pub(super) async fn login(
+pub(super) async fn begin_login(
     visitor: Visitor,
     headers: HeaderMap,
     Fields(login): Fields<LoginRequest>,
@@ -130,7 +131,7 @@ pub(super) async fn login(
         // The page uses a link instead of a form, because its content security policy would block a form that redirects
         // to the platform.
         let address = format!("/lti/login?{}", query.finish());
-        let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
+        let page = render(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; \
@@ -139,28 +140,28 @@ pub(super) async fn login(
         return Ok(with_policy(page, &policy));
     }
     let answer = visitor.begin_login(&platform, &login).await?;
-    Ok(sign_in::with_cookie(&browser_word(app, &answer.browser), &answer.address))
+    Ok(sign_in::with_cookie(&browser_cookie_of(app, &answer.browser), &answer.address))
 }
 
-pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<sign_in::Answer>) -> Result<Response, Problem> {
+pub(super) async fn accept(visitor: Visitor, Fields(answer): Fields<sign_in::Answer>) -> Result<Response, Problem> {
     let (state, token) = answer.read("platform", Problem::refused_launch)?;
     let launched = visitor.launch(&state, &token).await?;
-    Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.to))
+    Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.path))
 }
 
 /// Returns the service's public keys. Platforms read them at this address.
-pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
+pub(super) async fn send_keys(State(app): State<App>) -> Result<Response, Problem> {
     let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
 /// Returns the configuration for Canvas. An administrator enters the address of this answer there.
-pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
+pub(super) async fn send_configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();
     let host = public.split_once("://").map_or(public.as_str(), |(_, host)| host);
-    let placement = |place: &str, kind: &str| {
-        json!({"placement": place, "message_type": kind, "target_link_uri": launch, "text": "fosssim-oracle",
+    let placement = |location: &str, kind: &str| {
+        json!({"placement": location, "message_type": kind, "target_link_uri": launch, "text": "fosssim-oracle",
             "windowTarget": "_blank"})
     };
     Json(json!({
@@ -182,9 +183,9 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     }))
 }
 
-pub(super) async fn choose(person: Person, AddressParts { secret, .. }: AddressParts) -> Page {
+pub(super) async fn show_choice(person: Person, AddressParts { secret, .. }: AddressParts) -> Page {
     let (choice, app) = (person.choice(&secret).await?, &person.app);
-    show(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice, suites: &app.suites })
+    render(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice, suites: &app.suites })
 }
 
 pub(super) async fn choose_assignment(
@@ -194,18 +195,18 @@ pub(super) async fn choose_assignment(
 ) -> Result<Response, Problem> {
     let mut slug = choice.assignment;
     if !choice.title.trim().is_empty() {
-        slug = slug_of(&choice.title);
+        slug = propose_slug(&choice.title);
         let LinkTarget::Assignment { course, .. } = person.choice(&secret).await? else {
             return Err(Problem::not_found("course"));
         };
         let staff = person.clone().member_of(&course.slug).await?.staff()?;
-        course::make_assignment(&staff, &slug, choice.title.trim(), &choice.suite).await?;
+        course::create_assignment(&staff, &slug, choice.title.trim(), &choice.suite).await?;
     }
     match person.choose_assignment(&secret, &slug).await? {
         LinkStep::Assignment(path) => Ok(redirect_to(&path).into_response()),
         LinkStep::Answer { address, origins, token } => {
             let page =
-                show(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
+                render(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
             let policy = format!(
                 "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self' {origins}; \
                 base-uri 'none'; frame-ancestors 'none'"
@@ -216,15 +217,15 @@ pub(super) async fn choose_assignment(
 }
 
 impl NewPlatform {
-    fn wish(&self) -> Result<PlatformWish, Problem> {
-        let words = |text: &str| -> Vec<String> {
-            let words = text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty());
-            words.map(str::to_owned).collect()
+    fn settings(&self) -> Result<PlatformSettings, Problem> {
+        let list = |text: &str| -> Vec<String> {
+            let items = text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty());
+            items.map(str::to_owned).collect()
         };
-        let given = self.fields.iter().map(|(name, text)| (name, text.trim())).filter(|(_, text)| !text.is_empty());
-        let fields: Value = given
+        let filled = self.fields.iter().map(|(name, text)| (name, text.trim())).filter(|(_, text)| !text.is_empty());
+        let fields: Value = filled
             .map(|(name, text)| match name.as_str() {
-                "deployments" | "hosts" => (name.clone(), Value::from(words(text))),
+                "deployments" | "hosts" => (name.clone(), Value::from(list(text))),
                 _ => (name.clone(), Value::from(text)),
             })
             .collect();
@@ -235,19 +236,19 @@ impl NewPlatform {
 /// Shows who would join and who would leave, before members are changed.
 pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Page {
     let is_done = form.confirm.is_some();
-    let read = staff.read_roster(if is_done { RosterWish::Confirmed } else { RosterWish::Preview }).await?;
+    let changes = staff.read_roster(if is_done { RosterMode::Confirmed } else { RosterMode::Preview }).await?;
     let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/members", staff.slug), "Members");
-    show(&RosterPage { frame, slug: staff.slug.clone(), read, is_done })
+    render(&RosterPage { frame, slug: staff.slug.clone(), changes, is_done })
 }
 
-deeds! {
+actions! {
     choose_course(person: Person, { secret }, choice: CourseChoice): {
         let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
         person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim()))
     } => "/lti/choose/{secret}";
     set_platform(admin: Admin, form: NewPlatform):
-        async { admin.set_platform(form.name.trim(), &form.wish()?).await } => "/admin/platforms";
-    shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin/platforms";
+        async { admin.set_platform(form.name.trim(), &form.settings()?).await } => "/admin/platforms";
+    shut_platform(admin: Admin, { name }): admin.close_platform(&name) => "/admin/platforms";
     new_key(admin: Admin): admin.new_platform_key() => "/admin/platforms";
     send_scores(staff: Staff, { course, assignment }):
         staff.send_scores(&assignment) => "/c/{course}/a/{assignment}/class";

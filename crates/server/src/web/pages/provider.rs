@@ -1,6 +1,6 @@
 //! The pages for signing in at an OpenID Connect provider.
 use super::{
-    super::{input::QueryInput, who::provider_cookie},
+    super::{identification::provider_cookie, input::QueryInput},
     redirect_to,
     sign_in::{self, Answer, NextPage},
 };
@@ -15,17 +15,17 @@ use axum::{
 
 /// Redirects to the provider, and sets a cookie by which the browser is recognized when it returns. The browser then
 /// opens a page of this server, so a cookie with `SameSite=Lax` is sent.
-fn redirect(app: &App, begun: &LoginAnswer) -> Response {
+fn redirect(app: &App, login: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
-    let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
+    let (name, word) = (provider_cookie(app.is_secure()), &login.browser);
     let cookie = format!("{name}={word}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
-    sign_in::with_cookie(&cookie, &begun.address)
+    sign_in::with_cookie(&cookie, &login.address)
 }
 
-/// Begins a sign-in. If the provider does not answer, the sign-in page says so and offers the other ways.
-pub(super) async fn begin(
+/// Begins a sign-in. If the provider does not answer, the sign-in page reports this and offers the other ways.
+pub(super) async fn begin_sign_in(
     visitor: Visitor,
-    QueryInput(NextPage { to }): QueryInput<NextPage>,
+    QueryInput(NextPage { path: to }): QueryInput<NextPage>,
 ) -> Result<Response, Problem> {
     match visitor.begin_at_provider(sign_in::local_path(&to), None).await {
         Ok(begun) => Ok(redirect(&visitor.app, &begun)),
@@ -37,17 +37,17 @@ pub(super) async fn begin(
     }
 }
 
-pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response, Problem> {
-    let begun = visitor.begin_at_provider("/account", Some(&person)).await?;
-    Ok(redirect(&visitor.app, &begun))
+pub(super) async fn begin_connection(visitor: Visitor, person: Person) -> Result<Response, Problem> {
+    let login = visitor.begin_at_provider("/account", Some(&person)).await?;
+    Ok(redirect(&visitor.app, &login))
 }
 
-pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
+pub(super) async fn accept(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
     let (state, code) = answer.read("provider", Problem::refused_sign_in)?;
     let signed_in = visitor.sign_in_by_provider(&state, &code).await?;
-    Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.to)))
+    Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.path)))
 }
 
-deeds! {
+actions! {
     disconnect(person: Person): person.disconnect() => "/account";
 }

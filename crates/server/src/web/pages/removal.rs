@@ -17,19 +17,19 @@ pub(super) struct Confirmation {
 }
 
 impl Confirmation {
-    fn ensure_is(&self, what: &str) -> Result<(), Problem> {
+    fn ensure_name(&self, what: &str) -> Result<(), Problem> {
         ensure(self.confirm == what, Problem::invalid(format!("to remove {what}, type its name")))
     }
 }
 
-deeds! {
+actions! {
     remove_submission(staff: Staff, { course, id }, form: Confirmation):
-        { form.ensure_is(&staff.submission(id).await?.login)?; staff.remove_submission(id) } => "/c/{course}";
+        { form.ensure_name(&staff.submission(id).await?.login)?; staff.remove_submission(id) } => "/c/{course}";
     remove_assignment(staff: Staff, { course, assignment }, form: Confirmation):
-        { form.ensure_is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
+        { form.ensure_name(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
     remove_course(admin: Admin, { course }, form: Confirmation):
-        { form.ensure_is(&course)?; admin.remove_course(&course) } => "/";
+        { form.ensure_name(&course)?; admin.remove_course(&course) } => "/";
     remove_person(admin: Admin, { login }, form: Confirmation):
-        { form.ensure_is(&login)?; admin.remove_person(&login) } => "/admin/people";
+        { form.ensure_name(&login)?; admin.remove_person(&login) } => "/admin/people";
     shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin/people";
 }

@@ -10,11 +10,11 @@ const MAX_REPORT_BYTES: u64 = 4 << 20;
 const FORBIDDEN_ELEMENTS: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
 /// Returns a report without its head; `None` if it is too large, or if it has a form that this version does not know.
-pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
+pub(super) async fn read_report(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
     if file.artifact.size > MAX_REPORT_BYTES {
         return Ok(None);
     }
-    let bytes = member.beginning(&file.artifact, MAX_REPORT_BYTES as usize).await?;
+    let bytes = member.read_beginning(&file.artifact, MAX_REPORT_BYTES as usize).await?;
     Ok(strip_head(&String::from_utf8_lossy(&bytes)).map(str::to_owned))
 }
 

@@ -1,5 +1,5 @@
 //! Tables of scenes, and sentences about the wrong scenes of submissions.
-use crate::domain::{AttemptChange, KeptResult, Standing};
+use crate::domain::{AttemptChange, Standing, StoredResult};
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The maximum number of scenes that a sentence names.
@@ -7,7 +7,7 @@ const MAX_NAMED: usize = 3;
 
 /// Returns the wrong scenes of all results that count, the most frequent first. Each has the logins of the students for
 /// whom it is wrong.
-pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
+pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, StoredResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
         let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());
@@ -28,7 +28,7 @@ pub(super) fn describe_change(change: &AttemptChange) -> String {
         if more > 0 { format!("{named} and {more} more") } else { named }
     };
     let since = format!("Since submission {},", change.since);
-    match (&change.right[..], &change.wrong[..]) {
+    match (&change.newly_right[..], &change.newly_wrong[..]) {
         ([], []) => format!("{since} no scene became right, and none wrong."),
         (right, []) if right.len() > MAX_NAMED => format!("{since} {} scenes became right.", right.len()),
         (right, []) => format!("{since} these became right: {}.", list(right)),
@@ -45,13 +45,17 @@ mod tests {
     #[test]
     fn a_change_names_few_scenes() {
         let names = |count: usize| (0..count).map(|number| format!("s{number}")).collect::<Vec<_>>();
-        let change =
-            |right, wrong| AttemptChange { since: 2, right: names(right), wrong: names(wrong), is_all_wrong: false };
-        let of = |right, wrong| describe_change(&change(right, wrong));
-        assert_eq!(of(0, 0), "Since submission 2, no scene became right, and none wrong.");
-        assert_eq!(of(1, 1), "Since submission 2, these became right: s0. No longer right: s0.");
-        assert_eq!(of(110, 0), "Since submission 2, 110 scenes became right.");
-        assert_eq!(of(0, 8), "Since submission 2, no longer right: s0, s1, s2 and 5 more.");
+        let change = |right, wrong| AttemptChange {
+            since: 2,
+            newly_right: names(right),
+            newly_wrong: names(wrong),
+            is_all_wrong: false,
+        };
+        let describe = |right, wrong| describe_change(&change(right, wrong));
+        assert_eq!(describe(0, 0), "Since submission 2, no scene became right, and none wrong.");
+        assert_eq!(describe(1, 1), "Since submission 2, these became right: s0. No longer right: s0.");
+        assert_eq!(describe(110, 0), "Since submission 2, 110 scenes became right.");
+        assert_eq!(describe(0, 8), "Since submission 2, no longer right: s0, s1, s2 and 5 more.");
         let none = AttemptChange { is_all_wrong: true, ..change(0, 8) };
         assert_eq!(describe_change(&none), "Since submission 2, no scene is right any more.");
     }

@@ -4,7 +4,7 @@ use super::{
         api::{self, Revision},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, redirect_to, show, text,
+    Page, PageFrame, redirect_to, render, text,
 };
 use crate::{
     calendar,
@@ -34,25 +34,25 @@ struct SettingsPage {
 pub(super) type SuiteOption = (String, String, bool);
 
 /// Returns the suites from which staff can choose: the ones that were uploaded to the course, and the grader's.
-pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
+pub(super) async fn list_suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
         let name = if name.is_empty() { text::short_digest(&digest) } else { &name };
-        let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
-        let is_this = settings.suite_archive.as_ref() == Some(&digest);
-        suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{at})"), is_this));
+        let time = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
+        let is_selected = settings.suite_archive.as_ref() == Some(&digest);
+        suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{time})"), is_selected));
     }
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
     let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.titles().all(|(name, _)| name != *suite));
     for (name, title) in known.titles().chain(other) {
-        let words = match (name, title) {
+        let text = match (name, title) {
             ("", _) => "the grader's default".to_owned(),
             (name, "") => name.to_owned(),
             (name, title) if title.contains(name) => title.to_owned(),
             (name, title) => format!("{title} ({name})"),
         };
-        suites.push((name.to_owned(), words, is_named && *name == settings.suite));
+        suites.push((name.to_owned(), text, is_named && *name == settings.suite));
     }
     Ok(suites)
 }
@@ -129,7 +129,7 @@ impl NewSettings {
             per_hour: parse("submissions in an hour", &self.per_hour)?,
             late_days: parse("late days", &self.late_days)?,
             late_percent: parse("the late penalty", &self.late_percent)?,
-            due_at: moment(&self.due, &self.due_zone, before.due_at)?,
+            due_at: read_due_date(&self.due, &self.due_zone, before.due_at)?,
             time_zone: match self.time_zone.trim() {
                 "" => None,
                 name => Some(parse("the time zone, such as Europe/Berlin,", name)?),
@@ -140,27 +140,27 @@ impl NewSettings {
 }
 
 /// Reads the time in a date field. If it is in the same minute as `before`, the exact time of `before` is kept.
-pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
+pub(super) fn read_due_date(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);
     }
     let east = if zone.is_empty() { 0 } else { parse("the time zone", zone)? };
-    let at = calendar::read_field(field.trim(), east);
-    let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} must be a date and time")))?;
-    let same = before.filter(|before| before.div_euclid(60_000) == at.div_euclid(60_000));
-    Ok(same.or(Some(at)))
+    let time = calendar::parse_field(field.trim(), east);
+    let time = time.ok_or_else(|| Problem::invalid(format!("{field:?} must be a date and time")))?;
+    let unchanged = before.filter(|before| before.div_euclid(60_000) == time.div_euclid(60_000));
+    Ok(unchanged.or(Some(time)))
 }
 
-pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, .. }: AddressParts) -> Page {
+pub(super) async fn show_page(staff: Staff, AddressParts { course: slug, assignment, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
     let frame = PageFrame::assignment(&staff, &assignment).with_parent(address, "Settings");
-    let suites = suites(&staff, &assignment.settings).await?;
+    let suites = list_suites(&staff, &assignment.settings).await?;
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
-    show(&SettingsPage { frame, slug, assignment, suites, megabytes })
+    render(&SettingsPage { frame, slug, assignment, suites, megabytes })
 }
 
-pub(super) async fn set(
+pub(super) async fn save(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
@@ -178,9 +178,9 @@ pub(super) async fn set(
 pub(super) async fn set_suite(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
-    QueryInput(asked): QueryInput<Revision>,
+    QueryInput(query): QueryInput<Revision>,
     request: Request,
 ) -> Result<Redirect, Problem> {
-    let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;
+    let assignment = api::receive_suite(&staff, &assignment, &query, request).await?;
     Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }

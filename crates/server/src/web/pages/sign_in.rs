@@ -4,7 +4,7 @@ use super::{
         guard::{SESSION_SECONDS, session_cookie},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, redirect_to, show,
+    Page, PageFrame, redirect_to, render,
 };
 use crate::{
     domain::{App, NewSecret, Visitor},
@@ -48,21 +48,21 @@ pub(super) struct Token {
 /// The page that a person requested before they signed in.
 #[derive(Deserialize)]
 pub(super) struct NextPage {
-    #[serde(default)]
-    pub(super) to: String,
+    #[serde(default, rename = "to")]
+    pub(super) path: String,
 }
 
 /// Returns a path on this server. If the text is anything else, the path of the home page is returned. Browsers read
 /// `//` and `/\` as the start of another host's name.
-pub(super) fn local_path(to: &str) -> &str {
+pub(super) fn local_path(path: &str) -> &str {
     let is_local =
-        to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
-    if is_local { to } else { "/" }
+        path.starts_with('/') && !path.starts_with("//") && path.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
+    if is_local { path } else { "/" }
 }
 
 /// Returns a redirection that sets the cookie of a new session.
-pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Response {
-    with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
+pub(super) fn start_session(app: &App, session: &NewSecret, path: &str) -> Response {
+    with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), path)
 }
 
 /// The parameters with which another service answers a sign-in.
@@ -79,24 +79,24 @@ pub(super) struct Answer {
 impl Answer {
     /// Returns the state and the code. If the service reports an error instead, the rejection contains it, shortened to
     /// one line.
-    pub(super) fn read(self, service: &str, refused: fn(String) -> Problem) -> Result<(String, String), Problem> {
+    pub(super) fn read(self, service: &str, reject: fn(String) -> Problem) -> Result<(String, String), Problem> {
         if let (Some(state), Some(code)) = (self.state, self.code) {
             return Ok((state, code));
         }
         let fault = [self.error, self.error_description].into_iter().flatten().collect::<Vec<_>>().join(": ");
         let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
         Err(match fault.as_str() {
-            "" => Problem::invalid("state, or the code or token, is missing"),
+            "" => Problem::invalid("the state, or the code or token, is missing"),
             fault if fault.starts_with("access_denied") => {
-                refused(format!("the sign-in was stopped by you or by the {service} ({fault})"))
+                reject(format!("the sign-in was stopped by you or by the {service} ({fault})"))
             }
-            fault => refused(format!("the {service} says: {fault}")),
+            fault => reject(format!("the {service} reports: {fault}")),
         })
     }
 }
 
-pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
-    let mut response = redirect_to(to).into_response();
+pub(super) fn with_cookie(cookie: &str, path: &str) -> Response {
+    let mut response = redirect_to(path).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
         response.headers_mut().append(header::SET_COOKIE, value);
     }
@@ -108,24 +108,27 @@ pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page 
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let known = visitor.app.provider.as_ref();
     let provider = known.map(|known| (known.label.clone(), format!("/sign-in/provider?to={query}")));
-    show(&SignIn { frame: PageFrame::default(), provider, fault, to })
+    render(&SignIn { frame: PageFrame::default(), provider, fault, to })
 }
 
-pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
+pub(super) async fn show_page(visitor: Visitor, QueryInput(NextPage { path: to }): QueryInput<NextPage>) -> Page {
     render_ways(&visitor, to, String::new())
 }
 
-pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
+pub(super) async fn sign_in_by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
     Ok(start_session(&visitor.app, &session, local_path(&form.to)))
 }
 
 /// Shows the page of a sign-in link. Opening the link does not sign in yet, because mail programs also open links.
-pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
-    show(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
+pub(super) async fn show_welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
+    render(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
 }
 
-pub(super) async fn by_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
+pub(super) async fn sign_in_by_link(
+    visitor: Visitor,
+    AddressParts { secret, .. }: AddressParts,
+) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
     Ok(start_session(&visitor.app, &session, "/"))
 }

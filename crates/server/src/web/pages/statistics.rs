@@ -20,7 +20,7 @@ pub(super) const SECTIONS: [(&str, &str); 6] = [
 ];
 
 /// Returns whether a student is in a category. All students are in the category with the empty name.
-pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
+pub(super) fn is_in_section(standing: &ShortStanding, part: &str) -> bool {
     let counts = standing.counts.as_ref();
     let code = counts.and_then(|counts| counts.code.as_deref());
     match part {
@@ -35,33 +35,34 @@ pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
 }
 
 /// Returns the likely mistake that a submission's one-line summary names.
-pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
+pub(super) fn likely_mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students who have something in common: what it is, their logins, and the number of a submission as an example.
-pub(super) type SharedBy = (String, Vec<String>, i64);
+/// Students with a common value, such as a mistake: the value, their logins, and the number of a submission as an
+/// example.
+pub(super) type StudentCluster = (String, Vec<String>, i64);
 
 /// The statistics of a class's results.
 pub(super) struct Statistics {
     pub(super) students: usize,
     /// The number of students in each of the [`SECTIONS`], with the category's name and text.
-    pub(super) parts: Vec<(&'static str, &'static str, usize)>,
+    pub(super) section_counts: Vec<(&'static str, &'static str, usize)>,
     /// The mean and the median of the points in percent, over all submissions that were run; `None` if no submission
     /// was run.
-    pub(super) points: Option<(String, String)>,
+    pub(super) mean_and_median: Option<(String, String)>,
     /// The histogram of points, as HTML.
-    pub(super) bars: String,
+    pub(super) histogram: String,
     /// The likely mistakes of students, the most frequent first.
-    pub(super) mistakes: Vec<SharedBy>,
+    pub(super) mistakes: Vec<StudentCluster>,
     /// The files that several students submitted unchanged.
-    pub(super) same: Vec<SharedBy>,
+    pub(super) identical_files: Vec<StudentCluster>,
 }
 
 impl Statistics {
     pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
-        let count = |part: &str| standings.iter().filter(|one| is_in(one, part)).count();
-        let ran = standings.iter().filter(|one| !is_in(one, "never-ran"));
+        let count = |part: &str| standings.iter().filter(|one| is_in_section(one, part)).count();
+        let ran = standings.iter().filter(|one| !is_in_section(one, "never-ran"));
         let mut shares: Vec<f64> = ran.filter_map(|one| points_share(one.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
@@ -69,20 +70,22 @@ impl Statistics {
         let points = Some(shares.len()).filter(|count| *count > 0);
         Self {
             students: standings.len(),
-            parts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
-            points: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
-            bars: histogram::html(shares.iter().map(|share| share / 100.0)),
-            mistakes: find_shared(standings, mistake),
-            same: find_shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))
-                .into_iter()
-                .filter(|(_, logins, _)| logins.len() > 1)
-                .collect(),
+            section_counts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
+            mean_and_median: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
+            histogram: histogram::html(shares.iter().map(|share| share / 100.0)),
+            mistakes: find_clusters(standings, likely_mistake),
+            identical_files: find_clusters(standings, |counts| {
+                Some(counts.digest.as_str()).filter(|digest| !digest.is_empty())
+            })
+            .into_iter()
+            .filter(|(_, logins, _)| logins.len() > 1)
+            .collect(),
         }
     }
 
     /// Returns the number of students in a category such as `missing` or `accepted`.
     pub(super) fn count(&self, part: &str) -> usize {
-        self.parts.iter().find(|(name, ..)| *name == part).map_or(0, |(.., count)| *count)
+        self.section_counts.iter().find(|(name, ..)| *name == part).map_or(0, |(.., count)| *count)
     }
 }
 
@@ -93,16 +96,19 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Groups students by the value that `of` returns for their submissions. The largest groups are first.
-fn find_shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
+/// Groups students by the value that `value_of` returns for their submissions. The largest groups are first.
+fn find_clusters(
+    standings: &[ShortStanding],
+    value_of: impl Fn(&CountedSubmission) -> Option<&str>,
+) -> Vec<StudentCluster> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {
-        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, of(counts)?))) else {
+        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, value_of(counts)?))) else {
             continue;
         };
         found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(standing.login.clone());
     }
-    let mut found: Vec<SharedBy> =
+    let mut found: Vec<StudentCluster> =
         found.into_iter().map(|(name, (logins, first))| (name.to_owned(), logins, first)).collect();
     found.sort_by_key(|(_, logins, _)| Reverse(logins.len()));
     found

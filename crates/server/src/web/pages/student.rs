@@ -1,13 +1,13 @@
 //! The page for staff about one student's work, and the pages for importing a class from a table.
 use super::{
     super::{
-        api::{RequestWish, escape_cell},
+        api::{ReviewRequest, escape_cell},
         input::{AddressParts, Fields},
         upload,
     },
-    Page, PageFrame, grades, redirect_to, scenes,
-    settings::moment,
-    show, text,
+    Page, PageFrame, grades, redirect_to, render, scenes,
+    settings::read_due_date,
+    text,
 };
 use crate::{
     domain::{Assignment, Member, MemberInfo, MemberLine, Staff, StudentHistory},
@@ -30,7 +30,7 @@ struct StudentPage {
     changes: BTreeMap<i64, String>,
     /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
-    seen: i64,
+    seen_event: i64,
 }
 
 #[derive(Template)]
@@ -41,14 +41,14 @@ struct ImportPage {
     table: String,
     lines: Vec<ImportRow>,
     /// The columns in the table whose values are not stored.
-    left_out: BTreeSet<String>,
+    ignored_columns: BTreeSet<String>,
     is_wrong: bool,
     is_done: bool,
     /// A table of all sign-in links, as a `data:` URL that the browser can save.
     download: String,
     /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
-    seen: i64,
+    seen_event: i64,
 }
 
 impl ImportPage {
@@ -68,7 +68,7 @@ struct ImportRow {
     change: &'static str,
     link: String,
     /// A mail message that contains the sign-in link, as a `mailto:` URL.
-    letter: String,
+    mail: String,
 }
 
 #[derive(Deserialize)]
@@ -76,7 +76,8 @@ pub(super) struct NewExtension {
     due: String,
     #[serde(default)]
     due_zone: String,
-    seen: Option<i64>,
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 #[derive(Deserialize)]
@@ -93,19 +94,20 @@ pub(super) struct NewMark {
 pub(super) struct ImportedTable {
     table: String,
     import: Option<String>,
-    seen: Option<i64>,
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
-pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
+pub(super) async fn show(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     // Read the number of the newest event before the submissions, so that later changes are detected.
-    let seen = staff.last_event().await?;
+    let seen_event = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
     let frame = grades::class_frame(&staff, &assignment).with_parent(address, &work.name);
     let changes = staff.changes(&work.submissions).await?;
     let changes = changes.iter().map(|(id, change)| (*id, scenes::describe_change(change))).collect();
-    show(&StudentPage { frame, slug, assignment, work, changes, seen })
+    render(&StudentPage { frame, slug, assignment, work, changes, seen_event })
 }
 
 /// Reads points from a form field; `None` if the field is empty. A decimal comma, as in `7,5`, is read as a decimal
@@ -117,7 +119,7 @@ fn read_points(field: &str) -> Option<String> {
     }
 }
 
-async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_done: bool) -> Page {
+async fn render_import(staff: &Staff, table: String, lines: Vec<ImportRow>, is_done: bool) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff)
         .with_parent(format!("/c/{slug}/members"), "Members")
@@ -130,10 +132,11 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_don
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
-    let seen = staff.last_event().await?;
+    let seen_event = staff.last_event().await?;
     let download = format!("data:text/csv;charset=utf-8,{}", percent_encode(&bytes));
-    let left_out = lines.iter().flat_map(|line| line.member.unused.clone()).collect();
-    show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
+    let is_done = is_done && !is_wrong;
+    let ignored_columns = lines.iter().flat_map(|line| line.member.unused.clone()).collect();
+    render(&ImportPage { frame, slug, table, lines, ignored_columns, is_wrong, is_done, download, seen_event })
 }
 
 /// Encodes bytes for a URL, with percent signs.
@@ -141,22 +144,22 @@ fn percent_encode(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn import_row(course: &str, before: &[MemberInfo], of: MemberLine) -> ImportRow {
-    let change = match before.iter().find(|member| member.login == of.login) {
+fn import_row(course: &str, before: &[MemberInfo], line: MemberLine) -> ImportRow {
+    let change = match before.iter().find(|member| member.login == line.login) {
         None => "new",
-        Some(member) if member.role != of.role => "other role",
-        Some(member) if member.is_ours && member.name != of.name => "other name",
+        Some(member) if member.role != line.role => "other role",
+        Some(member) if member.is_ours && member.name != line.name => "other name",
         Some(_) => "unchanged",
     };
-    let link = of.link.clone().unwrap_or_default();
+    let link = line.link.clone().unwrap_or_default();
     let (subject, body) =
-        (percent_encode(course.as_bytes()), percent_encode(format!("{}:\n{link}\n", of.name).as_bytes()));
-    let letter = format!("mailto:{}?subject={subject}&body={body}", percent_encode(of.email.as_bytes()));
-    ImportRow { member: of, change, link, letter }
+        (percent_encode(course.as_bytes()), percent_encode(format!("{}:\n{link}\n", line.name).as_bytes()));
+    let letter = format!("mailto:{}?subject={subject}&body={body}", percent_encode(line.email.as_bytes()));
+    ImportRow { member: line, change, link, mail: letter }
 }
 
-pub(super) async fn import(staff: Staff) -> Page {
-    import_page(&staff, String::new(), Vec::new(), false).await
+pub(super) async fn show_import(staff: Staff) -> Page {
+    render_import(&staff, String::new(), Vec::new(), false).await
 }
 
 /// The maximum size of a file with a table of members, in bytes.
@@ -166,31 +169,31 @@ const MAX_TABLE_BYTES: u64 = 1 << 20;
 pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
     let received = upload::receive(&staff.app, request, MAX_TABLE_BYTES).await?;
     let table = String::from_utf8_lossy(&tokio::fs::read(&received.file).await?).into_owned();
-    preview(&staff, table, None, false).await
+    render_preview(&staff, table, None, false).await
 }
 
-async fn preview(staff: &Staff, table: String, seen: Option<i64>, is_meant: bool) -> Page {
+async fn render_preview(staff: &Staff, table: String, seen_event: Option<i64>, is_confirmed: bool) -> Page {
     let before = staff.members().await?;
-    let lines = staff.import(&table, !is_meant, seen).await?;
+    let lines = staff.import(&table, !is_confirmed, seen_event).await?;
     let lines = lines.into_iter().map(|one| import_row(&staff.title, &before, one)).collect();
-    import_page(staff, table, lines, is_meant).await
+    render_import(staff, table, lines, is_confirmed).await
 }
 
 pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
-    preview(&staff, form.table, form.seen, form.import.is_some()).await
+    render_preview(&staff, form.table, form.seen_event, form.import.is_some()).await
 }
 
-deeds! {
+actions! {
     extend(staff: Staff, { course, assignment, login }, form: NewExtension): {
         let before = staff.student_history(&assignment, &login).await?.extended_to;
-        staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?, form.seen)
+        staff.extend(&assignment, &login, read_due_date(&form.due, &form.due_zone, before)?, form.seen_event)
     } => "/c/{course}/a/{assignment}/students/{login}";
     mark(staff: Staff, { course, id }, form: NewMark):
         async {
-            let seen = form.marked_at.as_ref().map(|moment| moment.parse().ok());
+            let seen_mark = form.marked_at.as_ref().map(|moment| moment.parse().ok());
             let points = read_points(form.points.trim());
-            staff.mark(id, points.as_deref(), form.comment.trim(), seen).await
+            staff.mark(id, points.as_deref(), form.comment.trim(), seen_mark).await
         } => "/c/{course}/s/{id}";
-    request(member: Member, { course, id }, form: RequestWish):
+    request(member: Member, { course, id }, form: ReviewRequest):
         member.request(id, form.text.trim()) => "/c/{course}/s/{id}";
 }

@@ -3,7 +3,7 @@ use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
-    redirect_to, report, scenes, show, text,
+    redirect_to, render, report, scenes, text,
 };
 use crate::{
     domain::{Assignment, History, Member, Staff, Submission},
@@ -33,7 +33,7 @@ struct SubmissionPage {
     submission: Submission,
     /// The owner's attempts and how many are left; `None` for other readers.
     work: Option<OwnWork>,
-    is_moving: bool,
+    is_pending: bool,
     history: Vec<History>,
     /// A sentence about what changed since the owner's preceding submission.
     change: Option<String>,
@@ -45,12 +45,12 @@ struct SubmissionPage {
     report: Option<String>,
 }
 
-pub(super) async fn assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
+pub(super) async fn show_assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
     let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
     let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Hand in");
     let work = OwnWork::read(&member, &assignment).await?;
-    show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
+    render(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
 
 pub(super) async fn submit(
@@ -58,8 +58,8 @@ pub(super) async fn submit(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     request: Request,
 ) -> Result<Redirect, Problem> {
-    let accepted = api::receive(&member, &assignment, request, None, None, None).await?;
-    Ok(redirect_to(&format!("/c/{slug}/s/{}", accepted.submission.id)))
+    let result = api::receive(&member, &assignment, request, None, None, None).await?;
+    Ok(redirect_to(&format!("/c/{slug}/s/{}", result.submission.id)))
 }
 
 /// Finds the assignment of a submission; `None` if the member may not see it.
@@ -68,8 +68,8 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 }
 
 /// Returns the frame of a submission's pages.
-fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
-    let of = |assignment: &Assignment| {
+fn submission_frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
+    let assignment_frame = |assignment: &Assignment| {
         let frame = PageFrame::assignment(member, assignment);
         if member.is_staff {
             frame.with_parent(format!("/c/{}/a/{}/class", member.slug, assignment.slug), "")
@@ -77,17 +77,17 @@ fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submissi
             frame
         }
     };
-    let frame = assignment.map_or_else(|| PageFrame::course(member), of);
+    let frame = assignment.map_or_else(|| PageFrame::course(member), assignment_frame);
     let address = format!("/c/{}/s/{}", member.slug, submission.id);
     frame.with_parent(address, &format!("Submission {}", submission.number))
 }
 
-pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {
+pub(super) async fn show_submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {
     let submission = member.submission(id).await?;
     let assignment = find_assignment(&member, &submission).await?;
-    let page = page_of(&submission);
+    let page = report_page(&submission);
     let report = match page.filter(|_| submission.removed_at.is_none()) {
-        Some(name) => report::read(&member, &member.report(id, name).await?).await?,
+        Some(name) => report::read_report(&member, &member.report(id, name).await?).await?,
         None => None,
     };
     let is_own = submission.login == member.account.login;
@@ -102,12 +102,12 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         (None, None) => Vec::new(),
     };
     let changes = member.changes(&attempts).await?;
-    show(&SubmissionPage {
+    render(&SubmissionPage {
         attempts: attempts.into_iter().rev().collect(),
-        frame: frame(&member, assignment.as_ref(), &submission),
+        frame: submission_frame(&member, assignment.as_ref(), &submission),
         is_own,
         work,
-        is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
+        is_pending: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
         change: changes.get(&id).map(scenes::describe_change),
         page,
@@ -118,12 +118,12 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
 }
 
 /// Returns the file name of the report that a submission's page shows. Staff see their own report, if there is one.
-fn page_of(submission: &Submission) -> Option<&'static str> {
+fn report_page(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();
     [STAFF_PAGE, PUBLISHED_PAGE, "report.html"].into_iter().find(|name| names.contains(name))
 }
 
-deeds! {
+actions! {
     grade_again(staff: Staff, { course, id }): staff.grade_again(id) => "/c/{course}/s/{id}";
 }

@@ -1,5 +1,5 @@
 //! Formats values as text or HTML for pages.
-pub(super) use crate::shown::verdict;
+pub(super) use crate::visible_grade::verdict;
 use crate::{
     calendar,
     domain::{RegradeState, Submission},

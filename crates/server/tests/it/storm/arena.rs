@@ -1,4 +1,4 @@
-//! The place of a storm: a database, a data folder, workers, and the list of submissions.
+//! The environment of a storm: a database, a data folder, workers, and the list of submissions.
 use super::grader;
 use crate::support::cluster::Cluster;
 use fosssim_server::{
@@ -16,13 +16,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// A worker is given up after this many seconds of silence.
+/// The number of seconds without a report after which a worker counts as lost.
 pub(super) const LEASE: u64 = 2;
 
-/// A job is given up after this many failures. More than the default: here workers die many times a minute.
+/// The number of failures after which a job is given up. It is larger than the default, because workers die often here.
 pub(super) const TRIES: u32 = 8;
 
-/// The result of a submission in calm weather.
+/// The result of a submission without disturbances.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Expected {
     pub(super) code: String,
@@ -43,11 +43,11 @@ pub(super) struct Arena {
     address: Address,
     grader: PathBuf,
     assignment: i64,
-    /// The submissions that were accepted, by name.
+    /// The accepted submissions, by name.
     accepted: BTreeMap<String, Expected>,
 }
 
-/// The findings afterwards.
+/// The state after the storm.
 pub(super) struct Found {
     pub(super) accepted: usize,
     pub(super) lost: Vec<String>,
@@ -56,7 +56,7 @@ pub(super) struct Found {
     pub(super) buried: usize,
     pub(super) late: i64,
     pub(super) left_behind: Vec<String>,
-    /// How many submissions took how many claims.
+    /// The number of submissions for each number of claims.
     pub(super) tries: BTreeMap<i64, usize>,
 }
 
@@ -100,7 +100,7 @@ impl Arena {
         Self { database, cluster, workers: Vec::new(), folder, address, grader, assignment, accepted: BTreeMap::new() }
     }
 
-    /// Starts a worker; all have one name.
+    /// Starts a worker. All workers have the same name.
     pub(super) fn start_worker(&mut self) {
         let log = fs::File::options().create(true).append(true).open(self.folder.path().join("log")).expect("a log");
         let worker = Command::new(env!("CARGO_BIN_EXE_fosssim-server"))
@@ -129,7 +129,8 @@ impl Arena {
         }
     }
 
-    /// Hands something in: stored first, then submission and job in one transaction, tried until it is known to stand.
+    /// Submits a file. It is stored first, and then the submission and its job are written in one transaction. This is
+    /// repeated until the commit is confirmed.
     pub(super) async fn hand_in(&mut self, name: &str, line: &str, expected: Expected) {
         let store = Store::folder(&self.folder.path().join("store")).expect("a store");
         let artifact = crate::support::put(&store, format!("{line}\n").as_bytes()).await;
@@ -176,12 +177,12 @@ impl Arena {
         transaction.commit().await
     }
 
-    /// How many of what was accepted.
+    /// Returns the number of accepted submissions that satisfy a condition.
     pub(super) fn count(&self, which: impl Fn(&Expected) -> bool) -> usize {
         self.accepted.values().filter(|expected| which(expected)).count()
     }
 
-    /// Waits for the last job, with workers that are killed no more (but poison still kills them).
+    /// Waits for the last job. Workers are no longer killed from outside, but poison still kills them.
     pub(super) async fn wait_until_all_is_done(&mut self) {
         let start = Instant::now();
         loop {
@@ -203,7 +204,7 @@ impl Arena {
             .int("n")
     }
 
-    /// Starts workers until there are this many.
+    /// Starts workers until `count` are running.
     pub(super) fn replace_the_dead(&mut self, count: usize) {
         self.workers.retain_mut(|worker| worker.try_wait().expect("a status").is_none());
         while self.workers.len() < count {
@@ -211,7 +212,7 @@ impl Arena {
         }
     }
 
-    /// Stops all workers in peace.
+    /// Stops all workers regularly.
     pub(super) fn calm_down(&mut self) {
         self.stop_workers();
     }
@@ -295,7 +296,7 @@ impl Arena {
         found
     }
 
-    /// The graders whose end no process waits for.
+    /// Returns the running graders for whose end no process waits.
     fn running_graders(&self) -> Vec<String> {
         let name = self.grader.to_str().expect("a plain path");
         let processes = fs::read_dir("/proc").expect("/proc").flatten();
@@ -315,13 +316,13 @@ impl Drop for Arena {
     }
 }
 
-/// Sends a signal to a worker that was not waited for yet.
+/// Sends a signal to a worker that is not yet reaped.
 pub(super) fn signal(worker: &Child, signal: i32) {
     // SAFETY: the process is this test's own child, and not reaped.
     unsafe { libc::kill(worker.id().cast_signed(), signal) };
 }
 
-/// Wakes this test's workers when they have been stopped for twice their lease, forever.
+/// Forever continues this test's workers after they were stopped for twice their lease.
 fn wake_the_frozen() {
     let own = std::process::id().to_string();
     let mut frozen: BTreeMap<i32, Instant> = BTreeMap::new();

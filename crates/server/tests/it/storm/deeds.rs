@@ -1,10 +1,10 @@
-//! Deeds of staff and bad uploads during a storm, in a course of their own: regrades, publishing, settings, removals
-//! and archive bombs. Requests that find no server are given up.
+//! Actions of staff and bad uploads during a storm, in a separate course: regrades, publishing, settings, removals and
+//! archive bombs. Requests that reach no server are not repeated.
 use crate::support::server::{Client, JSON, Server, bomb, program};
 
 const COURSE: &str = "/api/v1/courses/noise";
 
-/// Those who make noise.
+/// The people who perform these actions.
 pub(super) struct Noise {
     admin: Client,
     student: Client,
@@ -13,7 +13,7 @@ pub(super) struct Noise {
 }
 
 impl Noise {
-    /// Makes the course, its student, and an assignment with a few submissions.
+    /// Creates the course, its student, and an assignment with a few submissions.
     pub(super) fn begin(server: &Server, admin: &Client) -> Self {
         server.course(admin, "noise");
         let student = server.member(admin, "noise", "noisy", "student");
@@ -23,7 +23,7 @@ impl Noise {
         Self { admin: admin.clone(), student, bomb: bomb(80), deeds: 0 }
     }
 
-    /// Does the next deed at this server.
+    /// Performs the next action on this server.
     pub(super) fn act(&mut self, server: &Server) {
         self.deeds += 1;
         let number = self.deeds;
@@ -72,7 +72,7 @@ impl Noise {
         }
     }
 
-    /// Returns how many deeds were tried.
+    /// Returns the number of attempted actions.
     pub(super) fn deeds(&self) -> usize {
         self.deeds
     }

@@ -1,5 +1,5 @@
-//! A grader for storms: a script in the place of `fosssim-oracle` that does as its submission says. The real worker
-//! runs it as its child, so that everything around it is real.
+//! A grader for storms: a script that replaces `fosssim-oracle` and follows the instructions in the submission. The
+//! real worker runs it as its child.
 use std::{
     fs,
     os::unix::fs::PermissionsExt,

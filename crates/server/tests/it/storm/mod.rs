@@ -1,5 +1,5 @@
-//! Storms: real workers, killed, frozen and cut off at random moments while submissions come in, on both engines. What
-//! was accepted is graded, once, and as in calm weather.
+//! Storms: real workers, killed, frozen and cut off at random moments while submissions come in, on both engines. Each
+//! accepted submission is graded once, with the same result as without disturbances.
 //!
 //! Small by default; `scripts/crash-test` runs them at full size and prints the table of docs/server/crash-test.md.
 
@@ -12,7 +12,7 @@ mod weather;
 use arena::{Arena, Expected};
 use weather::{Size, Weather};
 
-/// All submissions, and all conditions that must be true afterwards.
+/// Runs a storm, and checks all conditions that must be true afterwards.
 async fn storm(mut arena: Arena, name: &str) {
     let size = Size::from_environment();
     let start = std::time::Instant::now();

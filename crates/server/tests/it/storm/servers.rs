@@ -60,7 +60,7 @@ fn script(path: &Path, text: &str) {
     fs::set_permissions(path, fs::Permissions::from_mode(0o755)).expect("permissions");
 }
 
-/// How large the store's disk is.
+/// The size of the store's disk.
 const DISK: u64 = 128 << 20;
 
 /// Fills a disk for a moment.
@@ -74,7 +74,7 @@ fn fill(disk: &Path) -> std::thread::JoinHandle<()> {
     })
 }
 
-/// Xorshift: any order of events will do.
+/// A random generator (xorshift). Any order of events is sufficient.
 struct Dice(u64);
 
 impl Dice {
@@ -94,7 +94,7 @@ struct Grades {
     all: usize,
 }
 
-/// Waits for the grades of all uploads: each its number, and whether the grader fails on it.
+/// Waits for the grades of all uploads. `expected` has each upload's number, and whether the grader fails on it.
 fn grades(server: &Server, students: &[Client], expected: &[(i64, bool)]) -> Grades {
     let mut found = Grades { wrong: Vec::new(), buried: 0, doubled: Vec::new(), all: 0 };
     let at = |student: &Client| Client { url: server.url.clone(), headers: student.headers.clone() };
@@ -118,8 +118,8 @@ fn grades(server: &Server, students: &[Client], expected: &[(i64, bool)]) -> Gra
     found
 }
 
-/// Uploads a program that earns its number, or one on which the grader fails. A client that hears nothing asks again,
-/// one of the servers, until it is told.
+/// Uploads a program that earns its number, or one on which the grader fails. A client that gets no answer repeats the
+/// request at one of the servers until it gets one.
 fn upload(servers: &[Server; 2], dice: &mut Dice, student: &Client, number: usize) -> (i64, bool) {
     let poison = number % 24 == 5;
     let text = if poison { program("POISON", 0) } else { program("WA", u32::try_from(number).expect("few")) };
@@ -142,7 +142,7 @@ fn engine(fresh: &Fresh) -> &'static str {
     }
 }
 
-/// A small storm is enough by default, because a server's start takes longer than a worker's.
+/// Returns the size of the storm. It is small by default, because a server starts more slowly than a worker.
 fn size() -> Size {
     let is_asked = std::env::var_os("FOSSSIM_STORM").is_some();
     if is_asked { Size::from_environment() } else { Size { submissions: 24, kills: 6 } }

@@ -1,9 +1,9 @@
-//! Events of a storm, at random.
+//! The random events of a storm.
 use super::arena::{Arena, Expected, signal};
 use fosssim_server::values;
 use std::time::Duration;
 
-/// How large a storm is.
+/// The size of a storm.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Size {
     pub(super) submissions: usize,
@@ -11,7 +11,7 @@ pub(super) struct Size {
 }
 
 impl Size {
-    /// `FOSSSIM_STORM=SUBMISSIONS,KILLS`, or small.
+    /// Reads the size from `FOSSSIM_STORM=SUBMISSIONS,KILLS`. Without this variable it is small.
     pub(super) fn from_environment() -> Self {
         let Ok(words) = std::env::var("FOSSSIM_STORM") else { return Self { submissions: 48, kills: 24 } };
         let (submissions, kills) = words.split_once(',').expect("FOSSSIM_STORM=SUBMISSIONS,KILLS");
@@ -41,9 +41,9 @@ impl<'a> Weather<'a> {
         Self { arena, size, seen: Seen::default(), random: u64::try_from(seed).expect("a date") | 1 }
     }
 
-    /// A number below `below`.
+    /// Returns a random number below `below`.
     fn random(&mut self, below: usize) -> usize {
-        // Xorshift: any order of events will do, and none needs to be repeated.
+        // This is xorshift. Any order of events is sufficient, and none must be reproducible.
         self.random ^= self.random << 13;
         self.random ^= self.random >> 7;
         self.random ^= self.random << 17;
@@ -55,7 +55,7 @@ impl<'a> Weather<'a> {
         let mut handed_in = 0;
         while handed_in < self.size.submissions || self.seen.kills < self.size.kills {
             self.arena.replace_the_dead(3);
-            // As many as the kills have come along, so that both end together.
+            // Submissions advance in proportion to the kills, so that both end together.
             let due = (self.seen.kills + 1) * self.size.submissions / self.size.kills.max(1);
             while handed_in < due.min(self.size.submissions) {
                 self.hand_in(handed_in).await;
@@ -68,7 +68,8 @@ impl<'a> Weather<'a> {
         self.seen
     }
 
-    /// Of 24: one kills its worker each time, one its grader, two freeze their worker once, the rest are ordinary.
+    /// Submits the next file. Of 24 files, one kills its worker each time, one kills its grader, two freeze their
+    /// worker once, and the others are ordinary.
     async fn hand_in(&mut self, number: usize) {
         let name = format!("submission-{number}");
         let (kind, code) = match number % 24 {
@@ -101,7 +102,7 @@ impl<'a> Weather<'a> {
         self.seen.kills += 1;
     }
 
-    /// Stops a worker. The arena's warden wakes it when its lease is long over and others have its jobs.
+    /// Stops a worker. The arena continues it long after its lease has expired and others have its jobs.
     fn freeze(&mut self) {
         let victim = self.random(self.arena.workers.len());
         signal(&self.arena.workers[victim], libc::SIGSTOP);

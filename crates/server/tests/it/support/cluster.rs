@@ -16,14 +16,14 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// PostgreSQL's programs, and who may run them: the server refuses to be root.
+/// PostgreSQL's programs, and the user that runs them, because the server does not run as root.
 struct Programs {
     folder: PathBuf,
     user: Option<(u32, u32)>,
 }
 
 impl Programs {
-    /// Nothing if PostgreSQL is not installed.
+    /// Finds the programs; `None` if PostgreSQL is not installed.
     fn find() -> Option<Self> {
         let mut folders: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
             .map(|versions| versions.flatten().map(|version| version.path().join("bin")).collect())
@@ -126,7 +126,7 @@ impl Programs {
     }
 }
 
-/// A server of one's own.
+/// A separate server.
 pub(crate) struct Cluster {
     programs: Programs,
     folder: tempfile::TempDir,
@@ -134,7 +134,7 @@ pub(crate) struct Cluster {
 }
 
 impl Cluster {
-    /// A new server that really writes to the disk; nothing if PostgreSQL is not installed.
+    /// Starts a new server that really writes to the disk; `None` if PostgreSQL is not installed.
     pub(crate) fn start() -> Option<Self> {
         let programs = Programs::find()?;
         let folder = tempfile::tempdir().expect("a folder");
@@ -147,12 +147,12 @@ impl Cluster {
 
     /// Starts the server again.
     pub(crate) fn resume(&mut self) {
-        // The socket's lock of a killed server stays behind; the server itself sees that its owner is gone.
+        // A killed server leaves its socket's lock behind. The new server notices that its owner has ended.
         self.server = Some(self.programs.server(self.folder.path(), true).spawn().expect("postgres"));
         self.programs.wait_until_ready(self.folder.path());
     }
 
-    /// Kills the server and all its processes at once, like a power cut that spares the disk.
+    /// Kills the server and all its processes together, like a power cut that does not affect the disk.
     pub(crate) fn kill(&mut self) {
         let Some(mut server) = self.server.take() else { return };
         let children = fs::read_to_string(format!("/proc/{0}/task/{0}/children", server.id())).unwrap_or_default();
@@ -175,7 +175,7 @@ impl Drop for Cluster {
     }
 }
 
-/// The server of all test processes, kept alive while this value lives.
+/// The server that all test processes share. It runs at least as long as this value exists.
 pub(crate) struct Shared {
     programs: Programs,
     folder: PathBuf,
@@ -183,7 +183,7 @@ pub(crate) struct Shared {
 }
 
 impl Shared {
-    /// Joins the server of all test processes, and starts it when there is none.
+    /// Returns the server of all test processes, and starts it if it is not running.
     #[expect(clippy::zombie_processes, reason = "server and watcher outlive the test that happens to start them")]
     pub(crate) fn join() -> Option<Self> {
         let programs = Programs::find()?;
@@ -204,7 +204,7 @@ impl Shared {
             programs.server(&folder, false).process_group(0).spawn().expect("postgres");
             programs.wait_until_ready(&folder);
             // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next test waits
-            // at the door until the server is gone.
+            // until the server has ended.
             let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) &&
                 while sleep 15 && [ \"$(head -n1 data/postmaster.pid)\" = \"$pid\" ]; do
                     if flock door -c \"flock --nonblock users true &&
@@ -228,13 +228,13 @@ impl Shared {
         Some(Self { programs, folder, _user: user })
     }
 
-    /// An empty database of its own.
+    /// Creates an empty database.
     pub(crate) fn new_database(&self) -> Address {
         self.programs.create_database(&self.folder)
     }
 }
 
-/// Whether the server that once wrote its number into these data still runs.
+/// Returns whether the server whose process number is in this data folder is still running.
 fn is_running(data: &Path) -> bool {
     let Ok(file) = fs::read_to_string(data.join("postmaster.pid")) else { return false };
     let number = file.lines().next().unwrap_or_default();
@@ -243,7 +243,7 @@ fn is_running(data: &Path) -> bool {
     state.contains("(postgres)") && !state.contains("(postgres) Z")
 }
 
-/// PgBouncer in front of the tests' server, as hard on its clients as it can be: every transaction gets another
+/// PgBouncer in front of the tests' server, with the strictest settings for its clients: every transaction gets another
 /// connection, prepared statements are not known, and no start-up setting is ignored.
 pub(crate) struct Pooler {
     folder: tempfile::TempDir,
@@ -252,7 +252,7 @@ pub(crate) struct Pooler {
 }
 
 impl Pooler {
-    /// Nothing if PgBouncer is not installed.
+    /// Starts PgBouncer; `None` if it is not installed.
     pub(crate) fn start(cluster: &Shared) -> Option<Self> {
         let program = Path::new("/usr/sbin/pgbouncer");
         if !program.exists() {
@@ -291,7 +291,7 @@ impl Pooler {
         }
     }
 
-    /// Kills it, and starts it again after a pause.
+    /// Kills PgBouncer, and starts it again after a pause.
     pub(crate) fn kill_for(&mut self, pause: Duration) {
         self.server.kill().expect("kill");
         self.server.wait().expect("wait");
@@ -301,7 +301,7 @@ impl Pooler {
         self.wait_until_ready();
     }
 
-    /// The same database, reached through the pooler.
+    /// Returns the address of the same database through the pooler.
     pub(crate) fn address(&self, direct: &Address) -> Address {
         let Address::Postgres(url) = direct else { panic!("no PostgreSQL: {direct}") };
         let name = url.rsplit('/').next().expect("a name");

@@ -6,14 +6,14 @@ use std::{
     process::Command,
 };
 
-/// A file system of a few MiB in memory, unmounted at the end.
+/// A file system of a few MiB in memory. It is unmounted when this value is dropped.
 pub(crate) struct SmallDisk {
     place: PathBuf,
     folder: Option<tempfile::TempDir>,
 }
 
 impl SmallDisk {
-    /// One of this many bytes; nothing if this user may not mount.
+    /// Mounts a file system of the given size; `None` if this user may not mount.
     pub(crate) fn mount(bytes: u64) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let mut disk = Self::mount_at(folder.path(), bytes)?;
@@ -21,7 +21,7 @@ impl SmallDisk {
         Some(disk)
     }
 
-    /// The same at a folder, which is made.
+    /// Mounts the file system at a folder, which is created.
     pub(crate) fn mount_at(folder: &Path, bytes: u64) -> Option<Self> {
         std::fs::create_dir_all(folder).expect("a folder");
         let mount = Command::new("mount")
@@ -48,13 +48,13 @@ impl SmallDisk {
 
 impl Drop for SmallDisk {
     fn drop(&mut self) {
-        // Lazily: a server that is just ending may still have a file open.
+        // Unmount lazily, because a server that is about to end may still have a file open.
         drop(Command::new("umount").arg("--lazy").arg(&self.place).status());
         drop(self.folder.take());
     }
 }
 
-/// Files of a server's store, and of uploads that are on their way to it.
+/// Returns the number of files in a server's store and among its incoming uploads.
 pub(crate) fn stored(server: &Server) -> usize {
     fn files(folder: &Path) -> usize {
         let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

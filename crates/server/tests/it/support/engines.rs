@@ -1,9 +1,9 @@
-//! A fresh database of each engine.
+//! Fresh databases of each engine.
 use super::cluster;
 use fosssim_server::db::{self, Address, Database};
 use std::future::Future;
 
-/// A database of its own, removed at the end.
+/// A separate database, which is removed at the end.
 pub(crate) struct Fresh {
     pub(crate) database: Database,
     pub(crate) address: Address,
@@ -13,7 +13,7 @@ pub(crate) struct Fresh {
 }
 
 impl Fresh {
-    /// A SQLite file in a folder of its own, without tables.
+    /// Creates a SQLite file in a separate folder, without tables.
     pub(crate) async fn sqlite() -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let address = Address::Sqlite(folder.path().join("fosssim.db"));
@@ -21,14 +21,14 @@ impl Fresh {
         Some(Self { database, address, _folder: Some(folder), pooler: None, _cluster: None })
     }
 
-    /// A SQLite file in this folder, without tables.
+    /// Creates a SQLite file in the given folder, without tables.
     pub(crate) async fn sqlite_in(folder: &std::path::Path) -> Self {
         let address = Address::Sqlite(folder.join("fosssim.db"));
         let database = Database::open(&address).await.expect("a database");
         Self { database, address, _folder: None, pooler: None, _cluster: None }
     }
 
-    /// A database in the tests' own PostgreSQL, without tables; nothing if PostgreSQL is not installed.
+    /// Creates a database in the tests' PostgreSQL server, without tables; `None` if PostgreSQL is not installed.
     pub(crate) async fn postgres() -> Option<Self> {
         let cluster = cluster::Shared::join()?;
         let address = cluster.new_database();
@@ -36,7 +36,7 @@ impl Fresh {
         Some(Self { database, address, _folder: None, pooler: None, _cluster: Some(cluster) })
     }
 
-    /// The same behind PgBouncer; nothing if either is not installed.
+    /// Creates such a database behind PgBouncer; `None` if one of them is not installed.
     pub(crate) async fn pooled() -> Option<Self> {
         let cluster = cluster::Shared::join()?;
         let pooler = cluster::Pooler::start(&cluster)?;
@@ -45,7 +45,7 @@ impl Fresh {
         Some(Self { database, address, _folder: None, pooler: Some(pooler), _cluster: Some(cluster) })
     }
 
-    /// The same with all tables.
+    /// Returns the database with all tables.
     pub(crate) async fn with_tables(self) -> Self {
         db::migrate(&self.database).await.expect("tables");
         self
@@ -62,7 +62,7 @@ pub(crate) fn run<T>(future: impl Future<Output = T>) -> T {
         .block_on(future)
 }
 
-/// Makes a test for each engine from each `async fn name(fresh: Fresh)`.
+/// Declares a test for each engine from each `async fn name(fresh: Fresh)`.
 macro_rules! on_both_engines {
     ($($name:ident),* $(,)?) => {
         $crate::support::engines::tests! { sqlite, $($name)* }
@@ -71,7 +71,8 @@ macro_rules! on_both_engines {
 }
 pub(crate) use on_both_engines;
 
-/// Makes a test of what is the same on all engines; every handler's statements run on PostgreSQL in `web::roles`.
+/// Declares a test of behavior that does not depend on the engine. Every handler's statements run on PostgreSQL in
+/// `web::roles`.
 macro_rules! on_sqlite {
     ($($name:ident),* $(,)?) => {
         $crate::support::engines::tests! { sqlite, $($name)* }
@@ -79,7 +80,7 @@ macro_rules! on_sqlite {
 }
 pub(crate) use on_sqlite;
 
-/// The same, and once more behind a pooler.
+/// Declares a test for each engine, and another one behind a pooler.
 macro_rules! on_all_engines {
     ($($name:ident),* $(,)?) => {
         $crate::support::engines::on_both_engines! { $($name),* }

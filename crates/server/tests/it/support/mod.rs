@@ -7,7 +7,7 @@ pub(crate) mod provider;
 pub(crate) mod rows;
 pub(crate) mod server;
 
-/// The bytes of an artifact.
+/// Reads the bytes of an artifact.
 pub(crate) async fn bytes(store: &fosssim_server::store::Store, digest: &fosssim_server::store::Digest) -> Vec<u8> {
     let folder = tempfile::tempdir().expect("a folder");
     let file = folder.path().join("artifact");

@@ -1,4 +1,4 @@
-//! A learning platform: its keys, its messages, and its services, with the troubles that real ones have.
+//! A learning platform for tests: its keys, its messages, and its services, with the faults of real platforms.
 use super::server::{Answer, Client, Server};
 use axum::{
     Json, Router,
@@ -49,7 +49,7 @@ impl Key {
             "n": URL_SAFE_NO_PAD.encode(&self.n), "e": URL_SAFE_NO_PAD.encode(&self.e)})
     }
 
-    /// A token with such a header.
+    /// Signs a token with the given header.
     pub(crate) fn sign_as(&self, header: &Value, claims: &Value) -> String {
         let text = unsigned(header, claims);
         let mut signed = vec![0; self.pair.public().modulus_len()];
@@ -61,7 +61,7 @@ impl Key {
         self.sign_as(&json!({"alg": "RS256", "typ": "JWT", "kid": self.kid}), claims)
     }
 
-    /// The public key misused as a shared secret.
+    /// Signs a token with the public key, misused as a shared secret.
     pub(crate) fn sign_by_public(&self, claims: &Value) -> String {
         let text = unsigned(&json!({"alg": "HS256", "typ": "JWT", "kid": self.kid}), claims);
         let secret = hmac::Key::new(hmac::HMAC_SHA256, URL_SAFE_NO_PAD.encode(&self.n).as_bytes());
@@ -69,40 +69,40 @@ impl Key {
     }
 }
 
-/// Header and claims, as they are signed.
+/// Returns the header and the claims in the form that is signed.
 pub(crate) fn unsigned(header: &Value, claims: &Value) -> String {
     let part = |value: &Value| URL_SAFE_NO_PAD.encode(value.to_string());
     format!("{}.{}", part(header), part(claims))
 }
 
-/// The platform's first key, its second, and somebody else's that is called like the first.
+/// The platform's first and second key, and a foreign key with the name of the first.
 pub(crate) static KEYS: LazyLock<[Key; 3]> =
     LazyLock::new(|| [Key::make("first"), Key::make("second"), Key::make("first")]);
 
-/// The fate of a message to a service.
+/// The failure that a message to a service meets.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Trouble {
     Status(u16),
-    /// Asks to wait this many seconds.
+    /// The service asks the sender to wait for this number of seconds.
     Busy(u64),
-    /// Takes it, and the answer gets lost.
+    /// The service accepts the message, and the answer is lost.
     Lost,
-    /// Does not know the token any more.
+    /// The service no longer knows the token.
     Forgets,
 }
 
 #[derive(Default)]
 pub(crate) struct Inside {
-    /// Which of [`KEYS`] are published.
+    /// The indices of the published [`KEYS`].
     pub(crate) published: Vec<usize>,
     pub(crate) key_reads: usize,
     tokens: HashMap<String, String>,
     pub(crate) token_requests: usize,
-    /// The fates of the next scores.
+    /// The failures that the next scores meet.
     pub(crate) troubles: VecDeque<Trouble>,
-    /// Everything that came to columns: the column, and the score.
+    /// All received scores, with their columns.
     pub(crate) scores: Vec<(String, Value)>,
-    /// The grade book: of each column and person the newest score.
+    /// The grade book: the newest score of each column and person.
     pub(crate) grade_book: BTreeMap<(String, String), Value>,
     pub(crate) line_items: Vec<Value>,
     /// Whether the platform creates columns slowly.
@@ -119,7 +119,7 @@ pub(crate) struct Platform {
 }
 
 impl Platform {
-    /// A platform that knows the tool by its address, and is registered there as `lms`.
+    /// Starts a platform, and registers it at the server as `lms`.
     pub(crate) async fn start(server: &Server, admin: &Client) -> Self {
         let listener = tokio::net::TcpListener::bind("127.0.0.1:0").await.expect("a port");
         let url = format!("http://{}", listener.local_addr().expect("an address"));
@@ -149,7 +149,7 @@ impl Platform {
         self.inside.lock().expect("nobody panicked")
     }
 
-    /// The message about somebody who opens the link `link` in its course `physics`.
+    /// Returns the claims about a person who opens the link `link` in the course `physics`.
     pub(crate) fn claims(&self, nonce: &str, subject: &str, role: &str) -> Value {
         let now = now();
         json!({
@@ -170,7 +170,7 @@ impl Platform {
         })
     }
 
-    /// Waits until the grade book shows something of somebody.
+    /// Waits until a person's entry in the grade book satisfies a condition.
     pub(crate) fn wait_for(&self, subject: &str, what: impl Fn(&Value) -> bool) -> Value {
         let start = Instant::now();
         loop {
@@ -198,7 +198,7 @@ async fn keys(State(platform): State<Platform>) -> Json<Value> {
     Json(json!({"keys": keys}))
 }
 
-/// Gives a token to who shows an assertion that the tool signed for this very address.
+/// Returns a token to a sender with an assertion that the tool signed for this address.
 async fn token(State(platform): State<Platform>, body: String) -> Response {
     let fields: HashMap<String, String> = url::form_urlencoded::parse(body.as_bytes()).into_owned().collect();
     let tool = platform.inside().tool.clone();
@@ -220,7 +220,7 @@ async fn token(State(platform): State<Platform>, body: String) -> Response {
         .into_response()
 }
 
-/// The claims of a token that one of these keys signed.
+/// Returns the claims of a token that one of the published keys signed.
 pub(crate) fn checked(token: &str, published: &Value) -> Value {
     let decode = |part: &str| URL_SAFE_NO_PAD.decode(part).expect("base64");
     let (text, signed) = token.rsplit_once('.').expect("a signature");
@@ -241,7 +241,7 @@ fn may(inside: &Inside, headers: &HeaderMap, scope: &str) -> bool {
     shown.strip_prefix("Bearer ").and_then(|token| inside.tokens.get(token)).is_some_and(|known| known == scope)
 }
 
-/// Two members on each page.
+/// Lists the members, two on each page.
 async fn members(
     State(platform): State<Platform>,
     headers: HeaderMap,
@@ -318,7 +318,7 @@ async fn score(State(platform): State<Platform>, Path(id): Path<String>, headers
     let score: Value = serde_json::from_str(&body).expect("JSON");
     let who = score["userId"].as_str().expect("somebody").to_owned();
     inside.scores.push((id.clone(), score.clone()));
-    // As the specification has it: what is not newer is not kept.
+    // As the specification requires, only newer scores are stored.
     let newer = inside.grade_book.get(&(id.clone(), who.clone())).is_none_or(|known| {
         known["timestamp"].as_str().expect("a time") < score["timestamp"].as_str().expect("a time")
     });
@@ -331,14 +331,14 @@ async fn score(State(platform): State<Platform>, Path(id): Path<String>, headers
     StatusCode::NO_CONTENT.into_response()
 }
 
-/// A sign-in that a browser began.
+/// A sign-in that a browser has begun.
 pub(crate) struct Begun {
     pub(crate) state: String,
     pub(crate) nonce: String,
     pub(crate) cookie: String,
 }
 
-/// Begins a sign-in, as the platform makes a browser do.
+/// Begins a sign-in, as a browser does that comes from the platform.
 pub(crate) fn begin(server: &Server, platform: &Platform) -> Begun {
     let query = url::form_urlencoded::Serializer::new(String::new())
         .append_pair("iss", &platform.url)
@@ -367,7 +367,7 @@ pub(crate) fn begin(server: &Server, platform: &Platform) -> Begun {
     Begun { state: asked["state"].clone(), nonce: asked["nonce"].clone(), cookie }
 }
 
-/// Comes back from the platform with a token.
+/// Returns from the platform with a token.
 pub(crate) fn come(server: &Server, begun: &Begun, token: &str) -> Answer {
     let body = url::form_urlencoded::Serializer::new(String::new())
         .append_pair("state", &begun.state)
@@ -383,7 +383,7 @@ pub(crate) fn come(server: &Server, begun: &Begun, token: &str) -> Answer {
     server.visitor().send("POST", "/lti/launch", &headers, body.as_bytes())
 }
 
-/// Comes from the platform as somebody; what it says may be changed first. Who came, and where they are.
+/// Arrives from the platform as a person, with changed claims. Returns the person's client and the address of the page.
 pub(crate) fn arrive(
     server: &Server,
     platform: &Platform,

@@ -1,4 +1,4 @@
-//! An OpenID Connect provider: its configuration, and a token for each code.
+//! An OpenID Connect provider for tests: its configuration, and a token for each code.
 use super::{
     platform::{KEYS, now},
     server::{Answer, Client, Server},
@@ -27,12 +27,12 @@ const ANSWER: &str = "https://grades.example.org/sign-in/provider/answer";
 #[derive(Default)]
 pub(crate) struct Inside {
     url: String,
-    /// Which of [`KEYS`] is published.
+    /// The index of the published one of [`KEYS`].
     pub(crate) published: usize,
-    /// Of each code the challenge of who asked for it, and the token; each is given once.
+    /// For each code, the challenge of the sign-in and the token. Each is returned once.
     codes: HashMap<String, (String, String)>,
     count: usize,
-    /// The answer to the access token.
+    /// The claims that the provider returns for the access token.
     pub(crate) more: Value,
     pub(crate) is_away: bool,
 }
@@ -43,7 +43,7 @@ pub(crate) struct Provider {
     inside: Arc<Mutex<Inside>>,
 }
 
-/// A sign-in that a browser began.
+/// A sign-in that a browser has begun.
 pub(crate) struct Begun {
     pub(crate) asked: HashMap<String, String>,
     pub(crate) cookie: String,
@@ -68,14 +68,14 @@ impl Provider {
         self.inside.lock().expect("nobody panicked")
     }
 
-    /// The claims about a person, in answer to a sign-in.
+    /// Returns the claims about a person, as an answer to a sign-in.
     pub(crate) fn claims(&self, begun: &Begun, subject: &str) -> Value {
         json!({"iss": self.url, "aud": "grades", "sub": subject, "nonce": begun.asked["nonce"], "iat": now(),
             "exp": now() + 300, "name": format!("The {subject}"), "email": format!("{subject}@uni.example"),
             "email_verified": true})
     }
 
-    /// A code for which it gives this token.
+    /// Returns a code for which the provider returns this token.
     pub(crate) fn code(&self, begun: &Begun, token: &str) -> String {
         let mut inside = self.inside();
         inside.count += 1;
@@ -105,7 +105,7 @@ pub(crate) fn begin(client: &Client, path: &str) -> Begun {
     Begun { asked, cookie: cookie.split(';').next().expect("a value").to_owned() }
 }
 
-/// Comes back from the provider, with the cookies that a browser has.
+/// Returns from the provider, with the browser's cookies.
 pub(crate) fn come(server: &Server, (state, code): (&str, &str), cookies: &str) -> Answer {
     let query = url::form_urlencoded::Serializer::new(String::new())
         .append_pair("state", state)
@@ -116,7 +116,7 @@ pub(crate) fn come(server: &Server, (state, code): (&str, &str), cookies: &str) 
     server.visitor().send("GET", &format!("/sign-in/provider/answer?{query}"), &headers, b"")
 }
 
-/// Comes back from the provider as somebody; what is said of them may be changed first.
+/// Returns from the provider as a person, with changed claims.
 pub(crate) fn come_as(server: &Server, provider: &Provider, subject: &str, change: impl FnOnce(&mut Value)) -> Answer {
     let begun = begin(&server.visitor(), "/sign-in/provider?to=%2Fc%2Fphysics");
     let mut claims = provider.claims(&begun, subject);
@@ -126,7 +126,7 @@ pub(crate) fn come_as(server: &Server, provider: &Provider, subject: &str, chang
     come(server, (&begun.asked["state"], &code), &begun.cookie)
 }
 
-/// Signs somebody in. Who that is, and where they are.
+/// Signs a person in. Returns the person's client and the address of the page.
 pub(crate) fn sign_in(
     server: &Server,
     provider: &Provider,
@@ -136,7 +136,7 @@ pub(crate) fn sign_in(
     entered(server, &come_as(server, provider, subject, change).expect(303))
 }
 
-/// The browser of somebody who was just signed in, and where they are.
+/// Returns the client of a person who has just signed in, and the address of the page.
 pub(crate) fn entered(server: &Server, answer: &Answer) -> (Client, String) {
     let cookie = answer.header("set-cookie").expect("a session").split(';').next().expect("a value").to_owned();
     let headers = vec![("Cookie".to_owned(), cookie), ("Sec-Fetch-Site".to_owned(), "same-origin".to_owned())];

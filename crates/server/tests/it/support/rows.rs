@@ -1,10 +1,10 @@
-//! A course that has been used for years: rows made by the database itself.
+//! Fills a course with rows, as after years of use. The database itself creates them.
 use fosssim_server::{
     db::{Database, Transaction},
     values,
 };
 
-/// How many submissions: `FOSSSIM_ROWS`, or some.
+/// Returns the number of submissions: `FOSSSIM_ROWS`, or the default `some`.
 pub(crate) fn count(some: i64) -> i64 {
     std::env::var("FOSSSIM_ROWS").ok().map_or(some, |rows| rows.parse().expect("a number"))
 }
@@ -81,7 +81,7 @@ pub(crate) async fn fill(database: &Database, assignment: i64, students: i64, su
     transaction.commit().await.expect("commit");
 }
 
-/// Adds the events of all submissions behind one.
+/// Adds the events of all submissions after the number `first`.
 async fn add_events(transaction: &mut Transaction, first: i64) {
     for kind in ["submitted", "graded"] {
         transaction

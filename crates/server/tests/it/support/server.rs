@@ -1,4 +1,4 @@
-//! A real server as a process of its own, and somebody who speaks HTTP to it, well or badly.
+//! A real server as a separate process, and clients that send valid or invalid HTTP requests to it.
 use super::engines::Fresh;
 use fosssim_server::db::Address;
 use std::{
@@ -12,7 +12,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Grades as the submission says: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, of two scenes. Beside `grade.json` it
+/// Grades as the submission requests: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, for two scenes. Beside `grade.json` it
 /// writes a report with what a hostile program would like to have there.
 const GRADER: &str = r#"#!/bin/sh
 if [ "$1" = demo ]; then
@@ -91,7 +91,7 @@ END
 [ "$code" = AC ]
 "#;
 
-/// A program that the grader above grades so.
+/// Returns a program to which this grader gives the code and the points.
 pub(crate) fn program(code: &str, points: u32) -> Vec<u8> {
     format!("#!grade {code} {points}\n").into_bytes()
 }
@@ -116,14 +116,14 @@ impl Server {
         Self::start_with(fresh, options, folder, temp)
     }
 
-    /// The same, with this data folder, which is the caller's to remove.
+    /// Starts a server with the given data folder, which the caller must remove.
     pub(crate) fn start_in(fresh: &Fresh, options: &[&str], folder: PathBuf) -> Self {
         Self::start_with(fresh, options, folder, tempfile::tempdir().expect("a folder"))
     }
 
     fn start_with(fresh: &Fresh, options: &[&str], folder: PathBuf, temp: tempfile::TempDir) -> Self {
         let grader = folder.with_file_name("grader");
-        // Another server in this place may be using it.
+        // Another server with this folder may be using the file.
         if !grader.exists() {
             fs::write(&grader, GRADER.replace("VERSION", env!("CARGO_PKG_VERSION"))).expect("a script");
             fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
@@ -180,7 +180,7 @@ impl Server {
         self.folder.with_file_name("grader")
     }
 
-    /// The most memory that it ever had, in bytes.
+    /// Returns the server's peak memory in bytes.
     pub(crate) fn peak_memory(&self) -> u64 {
         let status = fs::read_to_string(format!("/proc/{}/status", self.child.id())).expect("its status");
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("its memory");
@@ -188,7 +188,7 @@ impl Server {
         kibibytes * 1024
     }
 
-    /// The database's address.
+    /// Returns the database's address.
     pub(crate) fn database(&self) -> String {
         self.database.clone()
     }
@@ -197,56 +197,56 @@ impl Server {
         fs::read_to_string(self.folder.with_file_name("log")).unwrap_or_default()
     }
 
-    /// The last word of the next line that it prints.
+    /// Returns the last word of the next line that the server prints.
     pub(crate) fn next_word(&mut self) -> String {
         let mut line = String::new();
         self.output.read_line(&mut line).expect("a line");
         line.trim().rsplit(' ').next().expect("a word").to_owned()
     }
 
-    /// The link that a fresh server prints next.
+    /// Returns the link that a fresh server prints next.
     pub(crate) fn first_link(&mut self) -> String {
         self.next_word().rsplit('/').next().expect("a secret").to_owned()
     }
 
-    /// `kill -9`.
+    /// Kills the server with SIGKILL.
     pub(crate) fn kill(&mut self) {
         self.child.kill().expect("kill");
         self.child.wait().expect("wait");
     }
 
-    /// Sends it a signal.
+    /// Sends a signal to the server.
     pub(crate) fn signal(&self, signal: i32) {
         // SAFETY: the process is this test's own child, and not reaped.
         unsafe { libc::kill(self.child.id().cast_signed(), signal) };
     }
 
-    /// Asks it to end, and returns how it did.
+    /// Stops the server, and returns its exit status.
     pub(crate) fn stop(&mut self) -> std::process::ExitStatus {
         // SAFETY: the process is this test's own child, and not reaped.
         unsafe { libc::kill(self.child.id().cast_signed(), libc::SIGTERM) };
         self.child.wait().expect("wait")
     }
 
-    /// Starts it once more with other options, when it has ended, and returns what it logs when it ends by itself.
+    /// Restarts the ended server with other options. If it ends immediately, returns its log as an error.
     pub(crate) fn start_again_with(&mut self, options: &[&str]) -> Result<(), String> {
         let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
         let (mut child, mut output, _) =
             Self::spawn(&self.folder, &self.grader(), &self.database, "127.0.0.1:0", &options)?;
         let mut rest = String::new();
-        // Ends with the process, which is not one that serves.
+        // The output ends with the process, which does not serve requests.
         output.read_to_string(&mut rest).expect("its output");
         if child.wait().expect("wait").success() { Ok(()) } else { Err(self.log()) }
     }
 
-    /// Starts it again at the same place.
+    /// Restarts the server at the same address.
     pub(crate) fn resume(&mut self) {
         let listen = self.url.strip_prefix("http://").expect("an address").to_owned();
         let start = Instant::now();
         let (child, output, _) = loop {
             match Self::spawn(&self.folder, &self.grader(), &self.database, &listen, &self.options) {
                 Ok(server) => break server,
-                // Somebody else's connection may have got the port meanwhile.
+                // Another connection may have received the port in the meantime.
                 Err(error) => assert!(start.elapsed() < Duration::from_secs(120), "{error}"),
             }
             std::thread::sleep(Duration::from_millis(100));
@@ -254,17 +254,17 @@ impl Server {
         (self.child, self.output) = (child, output);
     }
 
-    /// A person without any rights.
+    /// Returns a client without any rights.
     pub(crate) fn visitor(&self) -> Client {
         Client { url: self.url.clone(), headers: Vec::new() }
     }
 
-    /// Somebody with a token.
+    /// Returns a client with a token.
     pub(crate) fn with_token(&self, token: &str) -> Client {
         Client { url: self.url.clone(), headers: vec![("Authorization".to_owned(), format!("Bearer {token}"))] }
     }
 
-    /// Signs the first administrator in by the link, and makes a token for them.
+    /// Signs the first administrator in by the link, and creates a token.
     pub(crate) fn admin(&mut self) -> Client {
         let link = self.first_link();
         let session = self.visitor().welcome(&link);
@@ -272,7 +272,7 @@ impl Server {
         self.with_token(token["token"].as_str().expect("a token"))
     }
 
-    /// Makes a member of a course, and signs them in with a token.
+    /// Creates a member of a course, and signs the member in with a token.
     pub(crate) fn member(&self, by: &Client, course: &str, login: &str, role: &str) -> Client {
         let wish = format!(r#"{{"name": "The {login}", "role": "{role}"}}"#);
         let link = by.send("PUT", &format!("/api/v1/courses/{course}/members/{login}"), JSON, wish.as_bytes());
@@ -282,7 +282,7 @@ impl Server {
         self.with_token(token["token"].as_str().expect("a token"))
     }
 
-    /// A course with an assignment that students see.
+    /// Creates a course with an assignment that students see.
     pub(crate) fn course(&self, admin: &Client, slug: &str) {
         admin.post_json("/api/v1/courses", &format!(r#"{{"slug": "{slug}", "title": "Course {slug}"}}"#)).expect(201);
         let wish = r#"{"title": "Milestone one", "visible": true,
@@ -306,14 +306,14 @@ impl Drop for Server {
 
 pub(crate) const JSON: &[(&str, &str)] = &[("Content-Type", "application/json")];
 
-/// Somebody who speaks HTTP.
+/// A client that sends HTTP requests.
 #[derive(Debug, Clone)]
 pub(crate) struct Client {
     pub(crate) url: String,
     pub(crate) headers: Vec<(String, String)>,
 }
 
-/// An answer of the server.
+/// The server's answer.
 #[derive(Debug)]
 pub(crate) struct Answer {
     pub(crate) status: u16,
@@ -322,12 +322,12 @@ pub(crate) struct Answer {
 }
 
 impl Client {
-    /// A request, and the answer to its end.
+    /// Sends a request, and reads the answer to its end.
     pub(crate) fn send(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &[u8]) -> Answer {
         self.try_send(method, path, headers, body).expect("an answer")
     }
 
-    /// The same, when the server may be dead.
+    /// Sends a request to a server that may have ended.
     pub(crate) fn try_send(
         &self,
         method: &str,
@@ -349,7 +349,7 @@ impl Client {
         let mut stream = TcpStream::connect(host)?;
         stream.set_read_timeout(Some(Duration::from_secs(120)))?;
         stream.write_all(request.as_bytes())?;
-        // A server that has heard enough may answer before the body is through.
+        // A server may answer before it has received the whole body.
         drop(stream.write_all(body));
         Answer::read(&mut stream)
     }
@@ -362,7 +362,7 @@ impl Client {
         self.send("POST", path, JSON, body.as_bytes())
     }
 
-    /// A form, as a browser sends it from a page of the server.
+    /// Sends a form, as a browser does from a page of the server.
     pub(crate) fn post_form(&self, path: &str, body: &str) -> Answer {
         let headers = [("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "same-origin")];
         self.send("POST", path, &headers, body.as_bytes())
@@ -377,7 +377,7 @@ impl Client {
         Self { url: self.url.clone(), headers: headers.into() }
     }
 
-    /// Hands a program in, and returns the submission's number.
+    /// Submits a program, and returns the submission's number.
     pub(crate) fn submit(&self, course: &str, program: &[u8]) -> i64 {
         let path = format!("/api/v1/courses/{course}/assignments/m1/submissions?name=FOSSSim");
         self.send("POST", &path, &[], program).expect(201).json()["id"].as_i64().expect("a number")
@@ -400,7 +400,7 @@ impl Client {
 impl Answer {
     pub(crate) fn read(stream: &mut TcpStream) -> std::io::Result<Self> {
         let mut bytes = Vec::new();
-        // A reset after the answer is no loss.
+        // A reset after the answer does no harm.
         if let Err(error) = stream.read_to_end(&mut bytes)
             && bytes.is_empty()
         {

@@ -1,4 +1,4 @@
-//! Submissions on which the grader fails: what students read of them, and how staff has them graded again.
+//! Tests submissions on which the grader fails: the texts that students read, and a new grading by staff.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Client, JSON, Server, program},
@@ -100,7 +100,7 @@ fn a_suite_that_can_t_work_is_refused() {
             audit.contains("m1 (Milestone one), visible: uploaded suite \\\"") && !audit.contains("largest upload"),
             "{audit}"
         );
-        // A file alone is put into an archive.
+        // A single file is packed into an archive.
         admin.send("PUT", path, &[], b"title = 'alone'\n").expect(200);
         let refused = admin.send("PUT", path, &[], b"title = \n").expect(422).json();
         assert!(
@@ -108,7 +108,7 @@ fn a_suite_that_can_t_work_is_refused() {
             "{refused}"
         );
         admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
-        // A refusal stays in the frame of its assignment, and leads back to the form.
+        // A rejection has the frame of its assignment, and links back to the form.
         let form = [
             ("Content-Type", "multipart/form-data; boundary=b"),
             ("Sec-Fetch-Site", "same-origin"),
@@ -120,7 +120,7 @@ fn a_suite_that_can_t_work_is_refused() {
             page.contains("href=\"/c/physics/a/m1/settings?x=1\">Back") && page.contains(">Milestone one<"),
             "{page}"
         );
-        // Groups that it hides are not those that were published.
+        // The new suite's hidden groups are not those that were published.
         let published =
             || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["published_at"].clone();
         admin.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
@@ -128,7 +128,7 @@ fn a_suite_that_can_t_work_is_refused() {
         assert!(published().is_i64(), "it hides nothing");
         admin.send("PUT", path, &[], &suite("[[group]]\nvisibility = 'hidden'")).expect(200);
         assert!(published().is_null());
-        // Nobody knows yet whether a suite that is named hides any.
+        // It is not known yet whether a named suite hides groups.
         for (change, remains) in [("another suite", false), ("the same suite", true)] {
             admin.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
             let named = br#"{"title": "Milestone one", "settings": {"suite": "course-2027"}}"#;
@@ -136,7 +136,7 @@ fn a_suite_that_can_t_work_is_refused() {
             assert_eq!(published().is_i64(), remains, "{change}");
         }
         let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
-        assert!(audit.contains("; hidden groups are withheld"), "{audit}");
+        assert!(audit.contains("; withheld hidden groups"), "{audit}");
     });
 }
 

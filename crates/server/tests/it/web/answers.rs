@@ -1,4 +1,4 @@
-//! Tests texts for people: the files that an assignment accepts, the time of the next try, and links to other pages.
+//! Tests displayed texts: the files that an assignment accepts, the time of the next try, and links to other pages.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::{Answer, Client, JSON, Server, program},
@@ -14,13 +14,13 @@ on_sqlite!(
 
 const ASSIGNMENT: &str = "/api/v1/courses/physics/assignments/m1";
 
-/// Sets the assignment of the course.
+/// Saves the assignment of the course.
 fn set(by: &Client, visible: bool, settings: &str) {
     let wish = format!(r#"{{"title": "Milestone one", "visible": {visible}, "settings": {settings}}}"#);
     by.send("PUT", ASSIGNMENT, JSON, wish.as_bytes()).expect(200);
 }
 
-/// Sends a file by a form, as a browser does.
+/// Sends a file in a form, as a browser does.
 fn post_file(by: &Client, path: &str, name: &str, bytes: &[u8]) -> Answer {
     let head =
         format!("--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"{name}\"\r\n\r\n").into_bytes();
@@ -28,7 +28,7 @@ fn post_file(by: &Client, path: &str, name: &str, bytes: &[u8]) -> Answer {
     by.send("POST", path, &headers, &[&head, bytes, b"\r\n--x--\r\n"].concat())
 }
 
-/// An archive with one file.
+/// Returns an archive with one file.
 fn archive(name: &str) -> Vec<u8> {
     let mut archive = tar::Builder::new(Vec::new());
     let mut header = tar::Header::new_ustar();
@@ -52,13 +52,13 @@ async fn a_refusal_names_what_is_taken(fresh: Fresh) {
     assert_eq!(detail(b"text"), "expected a program for Linux (ELF, or a script that begins with #!), but found text");
     assert_eq!(
         detail(&archive("main.cpp")),
-        "this assignment takes a program for Linux; the file is an archive of sources"
+        "this assignment accepts a program for Linux, but the file is an archive of sources"
     );
     set(&admin, true, r#"{"forms": ["traces"]}"#);
     assert!(detail(b"text").starts_with("expected an archive of traces (.zip"), "{}", detail(b"text"));
     let page = post_file(&ada, "/c/physics/a/m1", "", b"").expect(400).text();
     assert!(page.contains("no file was chosen"), "{page}");
-    // A suite is no submission.
+    // A suite is not a submission.
     let problem = admin.send("PUT", &format!("{ASSIGNMENT}/suite"), &[], b"").expect(422).json();
     assert_eq!([&problem["title"], &problem["detail"]], ["This is not a suite", "the file is empty"]);
     let page = post_file(&admin, "/c/physics/a/m1/suite", "suite.zip", b"text").expect(422).text();
@@ -99,7 +99,7 @@ async fn a_browser_gets_pages_and_goes_on_where_it_wanted(fresh: Fresh) {
     let token = made["token"].as_str().expect("a token");
     let admin = server.with_token(token);
     server.course(&admin, "physics");
-    // The way in leads on, and never to another server.
+    // The sign-in page leads to the requested page, and never to another server.
     let way = visitor.get("/c/physics/a/m1?x=1").expect(303).header("location").expect("a place").to_owned();
     assert_eq!(way, "/sign-in?to=%2Fc%2Fphysics%2Fa%2Fm1%3Fx%3D1");
     let page = visitor.get(&way).expect(200).text();
@@ -108,11 +108,11 @@ async fn a_browser_gets_pages_and_goes_on_where_it_wanted(fresh: Fresh) {
         let answer = visitor.post_form("/sign-in", &format!("to={to}&token={token}")).expect(303);
         assert_eq!(answer.header("location"), Some(place));
     }
-    // Forms that a session by a token may not send are not there.
+    // Forms that a session from a token may not send are not shown.
     let page = admin.get("/account").expect(200).text();
     assert!(page.contains("You signed in with a token") && !page.contains("Create a token"), "{page}");
     assert!(session.get("/account").expect(200).text().contains("Create a token"));
-    // Refusals are pages for a browser, and problems for programs.
+    // Rejections are pages for browsers, and JSON for programs.
     let html = ("Accept", "text/html,*/*;q=0.8");
     let page = visitor.send("POST", "/sign-out", &[html, ("Sec-Fetch-Site", "cross-site")], b"").expect(403).text();
     assert!(page.contains("<h1>Sent from another site"), "{page}");
@@ -140,7 +140,7 @@ async fn numbers_and_staff_are_kept(fresh: Fresh) {
     teacher.send("DELETE", &place(second), &[], b"").expect(204);
     let third = ada.submit("physics", &program("AC", 3));
     assert_eq!(ada.get(&place(third)).expect(200).json()["number"], 3, "a number is given out once");
-    // The last of the staff stays, unless an administrator says otherwise.
+    // Only an administrator can remove the last member of staff.
     let members = "/api/v1/courses/physics/members";
     let wish = |name: &str, role: &str| format!(r#"{{"name": "{name}", "role": "{role}"}}"#);
     let change = |by: &Client, body: &str| by.send("PUT", &format!("{members}/teacher"), JSON, body.as_bytes());
@@ -152,7 +152,7 @@ async fn numbers_and_staff_are_kept(fresh: Fresh) {
     change(&teacher, &wish("T", "student")).expect(200);
     colleague.send("DELETE", &format!("{members}/colleague"), &[], b"").expect(409);
     admin.send("DELETE", &format!("{members}/colleague"), &[], b"").expect(204);
-    // Names that turn the letters behind them.
+    // Names with characters that change the direction of the text.
     for name in ["a\u{202e}b", "a\u{2066}b", "a\u{200b}b", "ab\u{feff}"] {
         admin.send("PUT", &format!("{members}/eve"), JSON, wish(name, "student").as_bytes()).expect(400);
     }

@@ -11,7 +11,7 @@ use std::{
     sync::atomic::{AtomicBool, Ordering},
 };
 
-/// Runs the program with a data folder and a database; how it ended and what it said.
+/// Runs the program with a data folder and a database. Returns the exit code and the output.
 fn command(words: &[&str], data: &Path, database: Option<&str>) -> (Option<i32>, String) {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-server"));
     command.args(words).arg("--data").arg(data).env_remove("FOSSSIM_DATABASE");
@@ -49,11 +49,11 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
     assert_eq!(code, Some(0), "{said}");
     assert!(copy.join("backup.json").is_file() && said.contains("artifacts"), "{said}");
     assert_eq!(fs::metadata(&copy).expect("a folder").permissions_mode(), 0o700);
-    // A second one is a folder of its own.
+    // A second backup needs another folder.
     let (code, said) = command(&["backup", copy.to_str().expect("UTF-8")], &server.folder, Some(&server.database()));
     assert!(code == Some(2) && said.contains("already exists"), "{said}");
 
-    // Elsewhere, on a database of its own.
+    // Restore into another folder, with another database.
     let data = folder.path().join("restored");
     let other = match fresh.address {
         Address::Sqlite(_) => None,
@@ -77,7 +77,7 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
         }
     };
     let again = Server::start_in(&other, &options, data.clone());
-    // Tokens are what they were, and what waited is graded.
+    // Tokens are still valid, and waiting submissions are graded.
     let ada = fosssim_client(&again, &ada);
     let submissions = ada.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json();
     let submissions = submissions.as_array().expect("a list");
@@ -93,7 +93,7 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
     }
 }
 
-/// The same person at another server.
+/// Returns the same person as a client of another server.
 fn fosssim_client(server: &Server, person: &crate::support::server::Client) -> crate::support::server::Client {
     crate::support::server::Client { url: server.url.clone(), headers: person.headers.clone() }
 }
@@ -134,16 +134,16 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         };
         // One artifact is changed, then one is missing.
         fs::write(&artifact, program("AC", 99)).expect("written");
-        refused(1, "is damaged: its bytes have another digest");
+        refused(1, "is damaged: its bytes do not match its name");
         fs::remove_file(&artifact).expect("removed");
         refused(2, "the backup is damaged: it has");
         fs::write(&artifact, program("WA", 40)).expect("written");
         assert_eq!(restore(3).0, Some(0));
-        // The manifest of a newer program, of newer tables, and none.
+        // The manifest of a newer program, one of newer tables, and no manifest.
         let manifest = copy.join("backup.json");
         let said = fs::read_to_string(&manifest).expect("a manifest");
         fs::write(&manifest, said.replace("\"schema\": 1", "\"schema\": 2")).expect("written");
-        refused(4, "the backup has format 2, this program reads up to 1");
+        refused(4, "the backup has format 2, but this program reads up to 1");
         let tables = format!("\"tables\": {}", db::NEWEST);
         assert!(said.contains(&tables), "{said}");
         fs::write(&manifest, said.replace(&tables, "\"tables\": 9999")).expect("written");
@@ -153,8 +153,8 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         fs::write(&manifest, &said).expect("written");
         // The copy of the database is changed.
         fs::write(copy.join("fosssim.db"), b"SQLite format 3").expect("written");
-        refused(7, "is damaged: it differs from the copy in the manifest");
-        // Nothing to copy.
+        refused(7, "is damaged: its digest is not the one in the manifest");
+        // There is no data folder to copy.
         let (code, said) = command(&["backup", text], &folder.path().join("none"), None);
         assert!(code == Some(2) && said.contains("there is no data folder"), "{said}");
     });

@@ -10,7 +10,7 @@ on_both_engines!(nobody_is_in_the_way_of_another);
 
 const BASE: &str = "/api/v1/courses/physics";
 
-/// How often each does what it does.
+/// The number of repetitions of each action.
 const ROUNDS: usize = 15;
 
 /// Repeats a request. Every request must be answered.
@@ -21,7 +21,7 @@ fn often(mut act: impl FnMut(usize) -> Vec<u16>) {
     }
 }
 
-/// Begins a regrade, tries to apply it, and gives it up where it is not ready.
+/// Begins a regrade, tries to apply it, and discards it if it is not ready.
 fn regrade(staff: &Client) -> Vec<u16> {
     let path = format!("{BASE}/assignments/m1/regrades");
     let begun = staff.post_json(&path, r#"{"reason": "again"}"#);

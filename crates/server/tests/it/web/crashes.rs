@@ -1,4 +1,4 @@
-//! Deaths of servers and workers cost a good submission nothing.
+//! Tests that deaths of servers and workers do no harm to a good submission.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Server, program},
@@ -47,7 +47,7 @@ async fn a_token_claims_as_much_as_its_workers_have_slots(fresh: Fresh) {
         .map(|answer| answer.json()["lease"].clone())
         .collect();
     assert_eq!(leases.len(), 3);
-    // A lease is its token's.
+    // A lease belongs to the token that claimed it.
     let lease = leases[0].to_string();
     assert_eq!(other.post_json("/api/v1/worker/renew", &lease).expect(200).json()["held"], false);
     let finish = |points: &str, most: &str| {

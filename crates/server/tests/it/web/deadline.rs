@@ -14,7 +14,7 @@ on_both_engines!(work_that_came_in_time_is_in_time);
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
-/// Begins an upload: its head, and the first byte.
+/// Begins an upload: sends its head and the first byte.
 fn begin(client: &Client, body: &[u8]) -> TcpStream {
     let host = client.url.strip_prefix("http://").expect("an address");
     let mut stream = TcpStream::connect(host).expect("a connection");

@@ -8,7 +8,7 @@ fn description() -> Value {
     serde_json::from_str(&web::openapi()).expect("JSON")
 }
 
-/// Every operation, by method and path.
+/// Returns every operation, with its method and path.
 fn operations(api: &Value) -> impl Iterator<Item = (&str, &str, &Value)> {
     let paths = api["paths"].as_object().expect("paths").iter();
     paths.flat_map(|(path, item)| {
@@ -16,7 +16,7 @@ fn operations(api: &Value) -> impl Iterator<Item = (&str, &str, &Value)> {
     })
 }
 
-/// Every value of this name, wherever it is.
+/// Collects every value with this name, at any depth.
 fn all<'a>(value: &'a Value, name: &str, found: &mut Vec<&'a Value>) {
     match value {
         Value::Object(fields) => {

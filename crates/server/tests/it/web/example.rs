@@ -1,4 +1,4 @@
-//! A server to try the service with: what the README promises of two commands.
+//! Tests the example course that the README promises with two commands.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::Server,
@@ -22,14 +22,14 @@ async fn two_commands_and_an_upload(fresh: Fresh) {
     let admin = server.visitor().welcome(&admin);
     let class = admin.get("/api/v1/courses/example/assignments/m1/class").expect(200).json();
     assert_eq!(class[0]["login"], "student");
-    // An administrator sees how much is in a course, and who is missing; staff, how many have handed in.
+    // An administrator sees the size of a course and missing staff. Staff see how many students have submitted.
     let courses = admin.get("/admin").expect(200).text();
     assert!(courses.contains("\"submissions\">1<") && courses.contains("nobody: <a"), "{courses}");
     let course = admin.get("/c/example").expect(200).text();
     assert!(course.contains(">1 of 1<") && course.contains("\"accepted\">0<"), "{course}");
     let class = admin.get("/c/example/a/m1/class").expect(200).text();
     assert!(class.contains("aria-label=\"Points of the class: 0 to 10 %: "), "{class}");
-    // Started again it makes no second one, and anybody who has signed in needs no link.
+    // After a restart there is no second example, and people who have signed in need no link.
     server.stop();
     server.resume();
     assert!(server.next_word().ends_with("/flawed-program"));

@@ -1,4 +1,4 @@
-//! The way of students and teachers, from the first link to a regrade.
+//! Tests the steps of students and teachers, from the first link to a regrade.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Answer, Client, JSON, Server, program},
@@ -21,7 +21,7 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     visitor.get("/ready").expect(200);
     visitor.get("/").expect(303);
     let link = server.first_link();
-    // Looking at the link, as mail programs do, does not use it up; using it does.
+    // Opening the link, as mail programs do, does not use it up. Signing in with it does.
     visitor.get(&format!("/welcome/{link}")).expect(200);
     let session = visitor.welcome(&link);
     assert!(session.get("/").expect(200).text().contains("you are not a member of any course yet"));
@@ -44,7 +44,7 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
         assert_eq!(submission["grade"]["code"], code, "{submission}");
         assert_eq!(submission["grade"]["points"], points, "{submission}");
     }
-    // A student sees their own only, in the API and in pages.
+    // Students see only their own submissions, in the API and on pages.
     bob.get(&format!("/api/v1/courses/physics/submissions/{first}")).expect(404);
     bob.get(&format!("/api/v1/courses/physics/submissions/{first}/files/report.txt")).expect(404);
     teacher.get(&format!("/api/v1/courses/physics/submissions/{first}")).expect(200);
@@ -78,7 +78,7 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     let metrics = visitor.get("/metrics").expect(200).text();
     assert!(metrics.contains("fosssim_jobs{state=\"done\"} 3"), "{metrics}");
     let audit = teacher.get("/c/physics/audit").expect(200).text();
-    assert!(audit.contains("bob is student"), "{audit}");
+    assert!(audit.contains("bob became student"), "{audit}");
     assert!(server.stop().success());
     assert!(!server.log().contains("fso_"), "the log has a token");
 }
@@ -97,7 +97,7 @@ async fn an_upload_sent_twice_is_one_submission(fresh: Fresh) {
     let problem = send(&program("AC", 2)).expect(409);
     assert_eq!(problem.header("content-type"), Some("application/problem+json"));
     assert_eq!(problem.json()["detail"], "this key was already used for another upload");
-    // At the same moment, too.
+    // Simultaneous uploads, too.
     let clients: Vec<_> = (0..8)
         .map(|_| {
             let ada = ada.clone();
@@ -132,7 +132,7 @@ async fn an_upload_sent_twice_is_one_submission(fresh: Fresh) {
     let all = ada.get(path).expect(200).json();
     assert_eq!(all.as_array().expect("a list").len(), 6);
     assert_eq!(all[0]["file_name"], "FOSSSim");
-    // Nobody grades here, so that places count up.
+    // No worker grades here, so the positions in the queue increase.
     let ahead: Vec<_> = [0, 1, 2]
         .map(|index| {
             let id = &all[5 - index]["id"];
@@ -166,7 +166,7 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     assert!(send(&program("AC", 2)).expect(409).text().contains("due date has passed"));
     set(r#"{"forms": ["sources"], "due_at": null, "per_hour": 0}"#).expect(200);
     send(&program("AC", 2)).expect(422);
-    // Settings that make no sense, and hidden assignments.
+    // Invalid settings, and hidden assignments.
     for wrong in [
         r#"{"seconds": 10800}"#,
         r#"{"suite": "../../etc/passwd"}"#,
@@ -177,9 +177,9 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     ] {
         set(wrong).expect(400);
     }
-    // Which suites there are, the grader says.
+    // The grader lists the suites that exist.
     set(r#"{"suite": "course-2027"}"#).expect(200);
-    assert!(set(r#"{"suite": "course-2028"}"#).expect(409).text().contains("suite is t2m2 or course-2027"));
+    assert!(set(r#"{"suite": "course-2028"}"#).expect(409).text().contains("suite must be t2m2 or course-2027"));
     assert_eq!(set(r#"{"suite": ""}"#).expect(200).json()["settings"]["suite"], "t2m2");
     let page = admin.get("/c/physics/a/m1/settings").expect(200).text();
     assert!(page.contains(">M2 (t2m2)</option><option value=\"course-2027\">New (course-2027)</option>"), "{page}");
@@ -217,8 +217,8 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert_eq!([&changes[0]["old_points"], &changes[0]["new_points"]], ["40", "20"]);
     assert_eq!(changes[0]["why"], serde_json::json!(["rules: the suite's before, the original's now"]));
     assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "40");
-    // A submission that comes in meanwhile is graded by the old settings, and is part of the regrade before it can be
-    // applied.
+    // A submission that arrives in the meantime is graded with the old settings, and is part of the regrade before it
+    // can be applied.
     let late = ada.submit("physics", &program("WA", 60));
     assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "60");
     let problem = admin.post_json(&format!("{base}/{id}/apply"), "").expect(409).json();
@@ -230,7 +230,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     let applied = admin.post_json(&format!("{base}/{id}/apply"), "").expect(200).json();
     assert_eq!(applied["state"], "applied");
     let log = admin.get("/c/physics/audit").expect(200).text();
-    assert!(log.contains(&format!("regrade {id} applied; rules: the suite")), "{log}");
+    assert!(log.contains(&format!("applied regrade {id}; rules: the suite")), "{log}");
     assert_eq!(applied["changes"].as_array().expect("a list").len(), 2, "what it changed can still be seen");
     admin.post_json(&format!("{base}/{id}/apply"), "").expect(409);
     admin.post_json(&format!("{base}/{id}/discard"), "").expect(409);
@@ -297,7 +297,7 @@ async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
     let link = |by: &Client, course: &str, login: &str| {
         by.post_json(&format!("/api/v1/courses/{course}/members/{login}/link"), "{}")
     };
-    // Staff signs in for their own students only, not for those who are more than that.
+    // Staff can create links only for their own students, not for people with more rights.
     let old = link(&teacher, "physics", "ada").expect(200).json()["link"].as_str().expect("a link").to_owned();
     let old = old.rsplit('/').next().expect("a secret").to_owned();
     link(&teacher, "physics", "teacher").expect(403);
@@ -306,12 +306,12 @@ async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
     colleague.send("PUT", "/api/v1/courses/other/members/ada", JSON, wish).expect(403);
     link(&colleague, "other", "ada").expect(404);
     link(&teacher, "physics", "ada").expect(200);
-    // A link that was made before is void, and so is what was made with one once a student becomes staff.
+    // When a student becomes staff, earlier links are invalid, and so are sessions and tokens that began with one.
     server.visitor().post_form(&format!("/welcome/{old}"), "").expect(401);
     ada.get("/api/v1/me").expect(200);
     assert!(set(&admin, "other", "ada", "staff")["link"].is_string(), "the way back in");
     ada.get("/api/v1/me").expect(401);
-    // Nobody's staff throws administrators or other staff out.
+    // Staff cannot remove administrators or staff of other courses.
     set(&teacher, "physics", "admin", "staff");
     set(&admin, "physics", "colleague", "staff");
     set(&teacher, "physics", "colleague", "student");
@@ -319,7 +319,7 @@ async fn nobody_gains_or_loses_rights_by_an_old_link(fresh: Fresh) {
     colleague.get("/api/v1/me").expect(200);
     link(&teacher, "physics", "admin").expect(403);
     link(&teacher, "physics", "colleague").expect(403);
-    // Somebody who is shut out stays out until somebody opens the account again.
+    // A closed account stays closed until it is opened again.
     admin.send("DELETE", "/api/v1/accounts/colleague", &[], b"").expect(204);
     colleague.get("/api/v1/me").expect(401);
     admin.send("DELETE", "/api/v1/accounts/admin", &[], b"").expect(409);

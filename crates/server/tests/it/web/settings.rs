@@ -106,7 +106,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     server.member(&colleague, "physics", "bob", "staff");
     let demoted = format!("login=bob&name=Bob&role=student&seen={seen}");
     let refused = admin.post_form("/c/physics/members", &demoted).expect(409).text();
-    assert!(refused.contains("colleague has changed it in the meantime: bob is staff"), "{refused}");
+    assert!(refused.contains("colleague has changed it in the meantime: bob became staff"), "{refused}");
     admin.post_form("/c/physics/members/bob/remove", &format!("seen={seen}")).expect(409);
     let wish = format!(r#"{{"name": "Bob", "role": "student", "seen": {seen}}}"#);
     admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
@@ -126,7 +126,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     colleague.send("PUT", extension, JSON, br#"{"due_at": "2026-12-08T22:59Z"}"#).expect(204);
     let form = format!("due=2026-12-03T12:00&due_zone=0&seen={seen}");
     let refused = admin.post_form("/c/physics/a/m1/students/ada/extension", &form).expect(409).text();
-    let words = "colleague has changed it in the meantime: ada hands in until 2026-12-08 22:59";
+    let words = "colleague has changed it in the meantime: ada got an extension until 2026-12-08 22:59";
     assert!(refused.contains(words), "{refused}");
     let wish = format!(r#"{{"due_at": null, "seen": {seen}}}"#);
     admin.send("PUT", extension, JSON, wish.as_bytes()).expect(409);

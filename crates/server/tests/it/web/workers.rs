@@ -269,8 +269,9 @@ async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
     // The same when it is started.
     assert_eq!(Machine::start(&server, token).child.wait().expect("an end").code(), Some(2));
     let log = fs::read_to_string(server.folder.with_file_name("worker.log")).expect("a log");
-    let said =
-        log.lines().filter(|line| line.starts_with("error: ") && line.contains("its token is unknown or revoked"));
+    let said = log
+        .lines()
+        .filter(|line| line.starts_with("error: ") && line.contains("the worker's token is unknown or revoked"));
     assert_eq!(said.count(), 2, "{log}");
 }
 

@@ -2,7 +2,7 @@
 // Updates the state of a submission until it is graded.
 const state = document.getElementById("state");
 if (state && state.dataset.follow) {
-  const look = async () => {
+  const update = async () => {
     const answer = await fetch(state.dataset.follow).catch(() => null);
     // An unavailable server may return.
     if (!answer || !answer.ok) return;
@@ -22,8 +22,8 @@ if (state && state.dataset.follow) {
     state.querySelector("[role=status]").textContent = text;
     if (progress) Object.assign(state.querySelector("progress"), { max: progress.all, value: progress.done });
   };
-  look();
-  setInterval(look, 2000);
+  update();
+  setInterval(update, 2000);
 }
 // Send a form for which a person need not decide anything.
 document.querySelector("form[data-send]")?.submit();
@@ -63,8 +63,8 @@ if (form) {
     sent.hidden = false;
     sent.removeAttribute("class");
     const bar = document.createElement("progress");
-    const say = (words) => sent.replaceChildren(words, document.createElement("br"), bar);
-    const stop = (words) => {
+    const showProgress = (words) => sent.replaceChildren(words, document.createElement("br"), bar);
+    const showFailure = (words) => {
       sent.className = "bad";
       sent.textContent = words;
       button.disabled = false;
@@ -73,7 +73,7 @@ if (form) {
     request.upload.addEventListener("progress", ({ loaded, total }) => {
       bar.max = total;
       bar.value = loaded;
-      say(
+      showProgress(
         loaded < total
           ? `${Math.floor((100 * loaded) / total)} % sent`
           : "Upload complete. The server is checking the file.",
@@ -87,14 +87,14 @@ if (form) {
       // A rejection is a page with the reason and the remedy.
       const page = new DOMParser().parseFromString(request.responseText, "text/html");
       const [title, ...words] = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
-      stop(title ? `${title}: ${words.join(" ")}` : `The server answered ${request.status}.`);
+      showFailure(title ? `${title}: ${words.join(" ")}` : `The server answered ${request.status}.`);
     });
     request.addEventListener("error", () =>
-      stop("The connection was interrupted. Submit again; the same upload counts only once."),
+      showFailure("The connection was interrupted. Submit again; the same upload counts only once."),
     );
     request.open("POST", form.action);
     request.send(new FormData(form));
-    say("0 % sent");
+    showProgress("0 % sent");
   });
 }
 // Show times in the reader's time zone.
@@ -121,7 +121,7 @@ const kind = document.getElementById("kind");
 if (kind) {
   const host = document.getElementById("host");
   const fill = () => {
-    const place =
+    const hostName =
       host.value
         .trim()
         .replace(/^https?:\/\//, "")
@@ -129,17 +129,17 @@ if (kind) {
     const cloud = "https://sso.canvaslms.com";
     const fields = {
       moodle: {
-        issuer: `https://${place}`,
-        login_url: `https://${place}/mod/lti/auth.php`,
-        token_url: `https://${place}/mod/lti/token.php`,
-        keys_url: `https://${place}/mod/lti/certs.php`,
+        issuer: `https://${hostName}`,
+        login_url: `https://${hostName}/mod/lti/auth.php`,
+        token_url: `https://${hostName}/mod/lti/token.php`,
+        keys_url: `https://${hostName}/mod/lti/certs.php`,
       },
       canvas: {
         issuer: "https://canvas.instructure.com",
         login_url: `${cloud}/api/lti/authorize_redirect`,
         token_url: `${cloud}/login/oauth2/token`,
         keys_url: `${cloud}/api/lti/security/jwks`,
-        hosts: host.value.trim() && place,
+        hosts: host.value.trim() && hostName,
       },
     }[kind.value];
     for (const [name, value] of Object.entries(fields ?? {})) document.getElementById(name).value = value;

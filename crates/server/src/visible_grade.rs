@@ -38,7 +38,7 @@ pub fn verdict(code: &str) -> &str {
 
 /// A grade without the withheld groups.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct ShownGrade {
+pub struct VisibleGrade {
     verdict: String,
     code: String,
     points: Option<String>,
@@ -48,8 +48,8 @@ pub struct ShownGrade {
 
 /// The texts about an outcome's scenes that the database stores.
 #[derive(Debug, Default)]
-pub struct KeptTexts {
-    /// The [`ShownGrade`] while groups are withheld; empty if the suite hides no groups.
+pub struct StoredTexts {
+    /// The [`VisibleGrade`] while groups are withheld; empty if the suite hides no groups.
     pub shown: String,
     /// The scenes that are not accepted, one per line after the verdict's code; `None` if they are unknown.
     pub failed: Option<String>,
@@ -73,15 +73,15 @@ pub struct GradeParts {
 ///
 /// # Errors
 /// Fails if the store fails.
-pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
-    let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(KeptTexts::default()) };
+pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<StoredTexts, StoreError> {
+    let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(StoredTexts::default()) };
     let opened = store.open(&file.artifact.digest).await?;
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
-    let shown = report.as_ref().map_or_else(|| Some(empty_grade()), shown_grade);
-    Ok(KeptTexts {
-        shown: shown.as_ref().map(text).unwrap_or_default(),
+    let shown = report.as_ref().map_or_else(|| Some(empty_grade()), visible_grade);
+    Ok(StoredTexts {
+        shown: shown.as_ref().map(to_text).unwrap_or_default(),
         failed: report.as_ref().map(list_failed),
         parts: report.as_ref().map(parts),
     })
@@ -114,13 +114,13 @@ fn parts(report: &GradeFile) -> String {
     serde_json::to_string(&parts).unwrap_or_default()
 }
 
-fn text(shown: &ShownGrade) -> String {
+fn to_text(shown: &VisibleGrade) -> String {
     serde_json::to_string(shown).unwrap_or_default()
 }
 
 /// Returns the grade that students see if all groups are withheld.
-fn empty_grade() -> ShownGrade {
-    ShownGrade {
+fn empty_grade() -> VisibleGrade {
+    VisibleGrade {
         verdict: "graded".to_owned(),
         code: "NR".to_owned(),
         points: None,
@@ -130,7 +130,7 @@ fn empty_grade() -> ShownGrade {
 }
 
 /// Returns the part of a `grade.json` that students see without hidden groups; `None` if the suite hides no groups.
-fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
+fn visible_grade(report: &GradeFile) -> Option<VisibleGrade> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
         |group: &&&GroupInFile| group.visibility.as_deref().is_none_or(|visibility| visibility == "visible");
@@ -150,7 +150,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
-    Some(ShownGrade {
+    Some(VisibleGrade {
         verdict: worst.verdict.clone(),
         // The code "--" means that no group was run; shown codes consist of letters.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
@@ -160,9 +160,9 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     })
 }
 
-impl ShownGrade {
+impl VisibleGrade {
     /// Reads the shown grade from a text of the database; `None` if nothing is withheld.
-    pub fn read(text: &str) -> Option<Self> {
+    pub fn from_text(text: &str) -> Option<Self> {
         match text {
             "" => None,
             text => Some(serde_json::from_str(text).unwrap_or_else(|_| empty_grade())),
@@ -170,18 +170,18 @@ impl ShownGrade {
     }
 
     /// Returns the points and the maximum number of points.
-    pub fn points(self) -> (Option<String>, Option<String>) {
+    pub fn into_points(self) -> (Option<String>, Option<String>) {
         (self.points, self.max_points)
     }
 
     /// Returns the verdict's code and the points.
-    pub fn line(self) -> (String, Option<String>) {
+    pub fn verdict_and_points(self) -> (String, Option<String>) {
         (self.code, self.points)
     }
 
     /// Reduces an outcome to the part that students see. Digests, sizes and exact times are also removed, because they
     /// would reveal changes in the withheld parts.
-    pub fn hide_from(self, outcome: &mut Outcome, page: &str) {
+    pub fn limit_to_students(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
         outcome.seconds = String::new();
@@ -198,8 +198,8 @@ pub fn round_to_hour(milliseconds: i64) -> i64 {
 mod tests {
     use super::*;
 
-    fn shown(groups: &str) -> Option<ShownGrade> {
-        shown_grade(&file(groups))
+    fn shown(groups: &str) -> Option<VisibleGrade> {
+        visible_grade(&file(groups))
     }
 
     fn file(groups: &str) -> GradeFile {
@@ -245,7 +245,7 @@ mod tests {
         assert_eq!((one.code.as_str(), one.verdict.as_str()), ("WA", "wrong answer"));
         assert_eq!((one.points.as_deref(), one.max_points.as_deref()), (Some("7.5"), Some("10.0")));
         assert!(one.summary.starts_with("1 of 2 scenes accepted"), "{}", one.summary);
-        assert_eq!(ShownGrade::read(&text(&one)), Some(one));
+        assert_eq!(VisibleGrade::from_text(&to_text(&one)), Some(one));
         assert_eq!(shown(&hidden("AC", 90)), Some(empty_grade()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));

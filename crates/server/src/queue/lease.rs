@@ -52,13 +52,13 @@ pub async fn renew(
     policy: &QueuePolicy,
     lease: &Lease,
     progress: Option<Progress>,
-    most: Duration,
+    max_age: Duration,
 ) -> Result<bool, DbError> {
     let (done, all) = progress.map(|Progress { done, all }| (i64::from(done), i64::from(all))).unzip();
     let statement = "UPDATE job SET lease_until = {now} + ?, scenes_done = coalesce(?, scenes_done),
            scenes = coalesce(?, scenes)
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND started_at >= {now} - ?";
-    let values = values![millis(policy.lease), done, all, lease.job, lease.attempt, &lease.key, millis(most)];
+    let values = values![millis(policy.lease), done, all, lease.job, lease.attempt, &lease.key, millis(max_age)];
     Ok(transaction.execute(statement, values).await? > 0)
 }
 
@@ -106,7 +106,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Records that a try failed, and why. The next try begins after `least` at the earliest.
+/// Records that a try failed, and why. The next try begins after `min_wait` at the earliest.
 ///
 /// # Errors
 ///
@@ -116,20 +116,20 @@ pub async fn fail(
     policy: &QueuePolicy,
     lease: &Lease,
     fault: &str,
-    least: Duration,
+    min_wait: Duration,
 ) -> Result<Failure, DbError> {
     let statement = "SELECT failures, deaths FROM job
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}";
-    let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
-    let Some(row) = held else { return Ok(Failure::Late) };
+    let leased = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
+    let Some(row) = leased else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
-    let (deaths, wait) = (row.int("deaths")?, policy.retry_delay(failures).max(least).min(MAX_PLATFORM_WAIT));
-    let loss = Loss { job: lease.job, failures, deaths, wait, fault };
-    lose_job(transaction, loss, failures >= i64::from(policy.max_failures)).await
+    let (deaths, wait) = (row.int("deaths")?, policy.retry_delay(failures).max(min_wait).min(MAX_PLATFORM_WAIT));
+    let failed_try = FailedTry { job: lease.job, failures, deaths, wait, fault };
+    end_try(transaction, failed_try, failures >= i64::from(policy.max_failures)).await
 }
 
 /// A failed try of a job, with the updated counts of failures.
-struct Loss<'a> {
+struct FailedTry<'a> {
     job: i64,
     failures: i64,
     deaths: i64,
@@ -146,13 +146,13 @@ pub(super) async fn give_up_worker(
     fault: &str,
 ) -> Result<Failure, DbError> {
     let (failures, deaths) = (row.int("failures")?, row.int("deaths")? + 1);
-    let loss = Loss { job: row.int("id")?, failures, deaths, wait: policy.wait_after_death(deaths), fault };
-    lose_job(transaction, loss, deaths >= policy.max_deaths()).await
+    let failed_try = FailedTry { job: row.int("id")?, failures, deaths, wait: policy.wait_after_death(deaths), fault };
+    end_try(transaction, failed_try, deaths >= policy.max_deaths()).await
 }
 
 /// Gives a job up if this was its last try, or lets it wait for another.
-async fn lose_job(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
-    let Loss { job, failures, deaths, wait, fault } = loss;
+async fn end_try(transaction: &mut Transaction, loss: FailedTry<'_>, is_last: bool) -> Result<Failure, DbError> {
+    let FailedTry { job, failures, deaths, wait, fault } = loss;
     if is_last {
         let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, finished_at = {now},
                lease_key = NULL, lease_until = NULL, last_fault = ?

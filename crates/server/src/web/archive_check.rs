@@ -26,11 +26,11 @@ const PROGRAM_DESCRIPTION: &str = "a program for Linux (ELF, or a script that be
 pub(super) async fn examine(
     member: &Member,
     file: &Path,
-    said: Option<&str>,
+    declared_form: Option<&str>,
     settings: &Settings,
 ) -> Result<Form, Problem> {
-    let wrong = || Problem::invalid("form must be program, sources or traces");
-    let form = said.map(|name| Form::from_name(name).ok_or_else(wrong)).transpose()?;
+    let invalid = || Problem::invalid("form must be program, sources or traces");
+    let form = declared_form.map(|name| Form::from_name(name).ok_or_else(invalid)).transpose()?;
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
     ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
@@ -42,19 +42,19 @@ pub(super) async fn examine(
         }
         _ => {}
     }
-    let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
+    let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.accepts_form(*form));
     let archives: Vec<&str> = archives.map(Form::name).collect();
     let archives = (!archives.is_empty())
         .then(|| format!("an archive of {} ({})", archives.join(" or "), fosssim_intake::KNOWN_EXTENSIONS));
-    let program = settings.takes(Form::Program).then(|| PROGRAM_DESCRIPTION.to_owned());
-    let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
-    let mut words = vec!["--wanted", &wanted];
-    words.extend(said.iter().flat_map(|form| ["--form", form]));
+    let program = settings.accepts_form(Form::Program).then(|| PROGRAM_DESCRIPTION.to_owned());
+    let accepted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
+    let mut flags = vec!["--wanted", &accepted];
+    flags.extend(declared_form.iter().flat_map(|form| ["--form", form]));
     // The grader's own suites do not build sources, so sources are not accepted for them.
-    if settings.suite_archive.is_none() && settings.takes(Form::Sources) {
-        words.extend(["--program", &settings.program]);
+    if settings.suite_archive.is_none() && settings.accepts_form(Form::Sources) {
+        flags.extend(["--program", &settings.program]);
     }
-    let answer = check_in_turn(member, file, &words).await?;
+    let answer = check_in_turn(member, file, &flags).await?;
     answer.map_err(Problem::unusable)?.ok_or_else(Problem::fault)
 }
 
@@ -66,21 +66,21 @@ pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Re
 
 /// Checks a file in another process of this program, when it is the sender's turn. Rejected files are counted, so that
 /// an account that sends many has to wait.
-async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
+async fn check_in_turn(member: &Member, file: &Path, flags: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
     let _turn = member.archive_turn().await?;
     // Start this same program, even if an update has replaced its file.
     let mut command = Command::new("/proc/self/exe");
-    command.arg("look-through").args(words).arg("--").arg(file);
+    command.arg("look-through").args(flags).arg("--").arg(file);
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
     worker::set_limits(&mut command, MAX_MEMORY, MAX_SECONDS);
-    let looked = tokio::process::Command::from(command).kill_on_drop(true).output();
-    let answer = match tokio::time::timeout(Duration::from_secs(MAX_SECONDS), looked).await {
+    let output = tokio::process::Command::from(command).kill_on_drop(true).output();
+    let answer = match tokio::time::timeout(Duration::from_secs(MAX_SECONDS), output).await {
         Ok(output) => serde_json::from_slice(&output?.stdout).ok(),
         Err(_) => None,
     };
     let answer = answer.unwrap_or_else(|| Err("checking the file takes too long, or needs too much memory".to_owned()));
     if answer.is_ok() {
-        member.note_right_archive();
+        member.accept_archive();
     }
     Ok(answer)
 }

@@ -11,7 +11,7 @@ const RECENT_JOBS: i64 = 50;
 
 /// A waiting job's position in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct QueuePosition {
     /// The number of jobs that are ahead of this one.
     pub ahead: i64,
     /// The expected time until the job's result. It is computed from recent jobs and the slots of live workers; `None`
@@ -26,14 +26,14 @@ pub struct Place {
 /// # Errors
 ///
 /// Fails if the database fails.
-pub async fn queue_place(
+pub async fn find_queue_position(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
     lane: Lane,
     job: i64,
-) -> Result<Option<Place>, DbError> {
-    let own = transaction.row("SELECT rank FROM job WHERE id = ? AND state = 'waiting'", values![job]).await?;
-    let Some(own) = own else { return Ok(None) };
+) -> Result<Option<QueuePosition>, DbError> {
+    let job_row = transaction.row("SELECT rank FROM job WHERE id = ? AND state = 'waiting'", values![job]).await?;
+    let Some(own) = job_row else { return Ok(None) };
     let rank = own.int("rank")?;
     let statement = "SELECT count(*) AS n FROM job
         WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))";
@@ -42,14 +42,14 @@ pub async fn queue_place(
            SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
            ORDER BY finished_at DESC LIMIT ?
         ) AS recent";
-    let usual = transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")?;
+    let usual_millis = transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")?;
     let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
         WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let slots =
         transaction.one(statement, values![2 * millis(policy.lease), 2 * millis(policy.lease)]).await?.int("slots")?;
-    let expected = usual.filter(|_| slots > 0).map(|usual| {
+    let expected = usual_millis.filter(|_| slots > 0).map(|usual| {
         let rounds = ahead / slots + 1;
         Duration::from_millis(u64::try_from(rounds.saturating_mul(usual.max(1))).unwrap_or(0))
     });
-    Ok(Some(Place { ahead, expected, is_served: slots > 0 }))
+    Ok(Some(QueuePosition { ahead, expected, is_served: slots > 0 }))
 }

@@ -2,7 +2,7 @@
 //! requests of other senders do not reach the handler.
 use super::input::SignedIn;
 use crate::{
-    domain::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
+    domain::{Admin, App, Member, Person, RemoteWorker, Secrets, Staff, Visitor},
     problem::Problem,
 };
 use axum::{
@@ -50,26 +50,26 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
         .and_then(|value| value.split_once(' '))
         .filter(|(scheme, _)| scheme.eq_ignore_ascii_case("bearer"))
         .map(|(_, token)| token.trim().to_owned());
-    let cookie = |wanted: &str| {
+    let cookie = |name: &str| {
         let texts = headers.get_all(header::COOKIE).iter().filter_map(|value| value.to_str().ok());
         let mut pairs = texts.flat_map(|value| value.split(';')).filter_map(|pair| pair.trim().split_once('='));
-        pairs.find(|(name, _)| *name == wanted).map(|(_, value)| value.to_owned())
+        pairs.find(|(cookie_name, _)| *cookie_name == name).map(|(_, value)| value.to_owned())
     };
     let (session, browser) = (cookie(cookie_name(secure)), cookie(browser_cookie(secure)));
     Secrets { bearer, session, browser, provider: cookie(provider_cookie(secure)), address: None }
 }
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
-    let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
+    let address_in_header = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
     // If the proxy's header is missing, the request bypassed the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
-    let address = said.or_else(peer).map(|address| address.to_canonical());
+    let address = address_in_header.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
 /// The course in a request's address. Other parts of the address are ignored.
 #[derive(Deserialize)]
-struct InCourse {
+struct CourseAddress {
     course: String,
 }
 
@@ -102,12 +102,12 @@ roles! {
     };
     Member: |parts, app| {
         let person = Person::from_request_parts(parts, app).await?;
-        let at = Path::<InCourse>::from_request_parts(parts, app).await;
-        person.member_of(&at.map(|Path(at)| at.course).unwrap_or_default()).await
+        let address = Path::<CourseAddress>::from_request_parts(parts, app).await;
+        person.member_of(&address.map(|Path(at)| at.course).unwrap_or_default()).await
     };
     Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
     Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();
-    Remote: |parts, app| {
+    RemoteWorker: |parts, app| {
         let token = read_secrets(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
         let remote = app.remote(&token, name).await?;

@@ -1,7 +1,7 @@
 //! Grades submissions again after the grader failed on them.
 use crate::domain::{
     Staff,
-    submissions::bulk::enqueue_replaced,
+    submissions::bulk_enqueue::enqueue_replaced,
     view::{self, Entry},
 };
 use crate::{
@@ -13,7 +13,8 @@ use utoipa::ToSchema;
 
 /// The answer to a request to grade submissions again.
 #[derive(Serialize, ToSchema)]
-pub struct RegradeOrder {
+#[schema(as = RegradeOrder)]
+pub struct EnqueuedJobs {
     /// The number of submissions that are graded again.
     pub jobs: i64,
 }
@@ -24,7 +25,7 @@ impl Staff {
     /// # Errors
     ///
     /// Fails if there is no submission with this number, it is being graded, or its bytes are no longer stored.
-    pub async fn grade_again(&self, id: i64) -> Result<RegradeOrder, Problem> {
+    pub async fn grade_again(&self, id: i64) -> Result<EnqueuedJobs, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;
         ensure(submission.removed_at.is_none(), Problem::removed())?;
@@ -33,17 +34,17 @@ impl Staff {
         let statement = "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
             AND state IN ('done', 'buried', 'cancelled')";
         let replaced = transaction.execute(statement, values![id]).await?;
-        ensure(replaced > 0, Problem::conflict("it is being graded", "wait for its grade"))?;
+        ensure(replaced > 0, Problem::conflict("the submission is being graded", "wait for its grade"))?;
         let jobs = enqueue_replaced(&mut transaction, &assignment, self.account.id, id..=id).await?;
         let entry = self.entry("graded again", Some(assignment.id), "one submission");
-        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        view::log_event(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
         self.app.0.notifier.commit(transaction).await?;
-        Ok(RegradeOrder { jobs })
+        Ok(EnqueuedJobs { jobs })
     }
 
     /// Grades the submissions on which the grader failed again, of one assignment or of the whole course. Returns their
     /// number.
-    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
+    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<EnqueuedJobs, Problem> {
         let assignments = match assignment {
             Some(slug) => vec![self.assignment(slug).await?],
             None => self.assignments().await?,
@@ -61,11 +62,11 @@ impl Staff {
             let found = enqueue_replaced(&mut transaction, &assignment, self.account.id, 0..=i64::MAX).await?;
             if found > 0 {
                 let text = format!("{found} submissions on which the grader failed");
-                self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;
+                self.log_event(&mut transaction, "graded again", Some(assignment.id), &text).await?;
             }
             self.app.0.notifier.commit(transaction).await?;
             jobs += found;
         }
-        Ok(RegradeOrder { jobs })
+        Ok(EnqueuedJobs { jobs })
     }
 }

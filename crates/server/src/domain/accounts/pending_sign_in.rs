@@ -18,15 +18,15 @@ use std::time::Instant;
 /// The maximum duration of a sign-in, in milliseconds.
 const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 
-/// The maximum number of sign-ins that an address may begin per minute at one service; a lecture hall may be one
-/// address.
+/// The maximum number of sign-ins that an address may begin per minute at one service. All people in a lecture hall may
+/// share an address.
 const MAX_LOGINS: u32 = 3000;
 
 /// The message for a sign-in that did not begin here, that was already answered, or that took too long.
 pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
 /// A sign-in that has begun, with the secrets that the answer must contain.
-pub(in crate::domain) struct BegunSignIn {
+pub(in crate::domain) struct StartedSignIn {
     /// The signed state, which the service returns.
     pub(in crate::domain) state: String,
     /// A secret that the browser keeps, and sends when it returns.
@@ -38,38 +38,38 @@ pub(in crate::domain) struct PendingSignIn {
     state: String,
     expires_at: i64,
     /// The service that confirms the sign-in: a platform's number, or a provider.
-    pub(in crate::domain) at: String,
+    pub(in crate::domain) service: String,
     /// The account that is being connected; 0 if a person signs in instead.
     pub(in crate::domain) account: i64,
     /// The path of the page that opens after the sign-in.
-    pub(in crate::domain) to: String,
+    pub(in crate::domain) path: String,
 }
 
 impl App {
     /// Begins a sign-in at a service. The browser may have begun other sign-ins there.
     pub(in crate::domain) async fn begin_sign_in(
         &self,
-        at: &str,
+        service: &str,
         (secrets, known): (&Secrets, Option<&String>),
         (account, to): (i64, &str),
-    ) -> Result<BegunSignIn, Problem> {
+    ) -> Result<StartedSignIn, Problem> {
         ensure(
-            self.0.throttle.try_acquire(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()),
+            self.0.throttle.try_acquire(throttle::bucket_id(secrets.address, service), MAX_LOGINS, Instant::now()),
             Problem::too_many("too many people are signing in from your address"),
         )?;
         // All windows of a browser share one secret.
-        let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
-        let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
+        let is_secret = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+        let browser = known.filter(is_secret).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
         let (expires_at, shown, to) = (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
-        let words = format!("{at}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
-        let state = format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, words.as_bytes())));
-        Ok(BegunSignIn { state, browser })
+        let content = format!("{service}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
+        let state = format!("{content}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, content.as_bytes())));
+        Ok(StartedSignIn { state, browser })
     }
 
     /// Returns a secret for a sign-in. Only this service can compute it from the state.
-    pub(in crate::domain) async fn word_of(&self, kind: &str, state: &str) -> Result<String, Problem> {
+    pub(in crate::domain) async fn compute_secret(&self, kind: &str, state: &str) -> Result<String, Problem> {
         let key = self.signing_key().await?;
         Ok(to_hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
     }
@@ -83,18 +83,18 @@ impl App {
         &self,
         state: &str,
         browser: Option<&String>,
-        refused: fn(&'static str) -> Problem,
+        reject: fn(&'static str) -> Problem,
     ) -> Result<PendingSignIn, Problem> {
         let key = self.signing_key().await?;
-        let (pending, shown) = parse_state(&key, state).ok_or_else(|| refused(UNKNOWN_SIGN_IN))?;
+        let (pending, shown) = parse_state(&key, state).ok_or_else(|| reject(UNKNOWN_SIGN_IN))?;
         let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
             AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
         let values = values![pending.expires_at, identity::digest(state)];
         let fresh = self.0.database.read().await?.row(statement, values).await?;
-        ensure(fresh.is_some(), refused(UNKNOWN_SIGN_IN))?;
-        let browser = browser.ok_or_else(|| refused("your browser did not send the cookie of this sign-in"))?;
+        ensure(fresh.is_some(), reject(UNKNOWN_SIGN_IN))?;
+        let browser = browser.ok_or_else(|| reject("your browser did not send the cookie of this sign-in"))?;
         // The sign-in began in another browser, whose owner may try to sign this browser in as somebody else.
-        ensure(shown == identity::digest(browser), refused("this sign-in began in another browser"))?;
+        ensure(shown == identity::digest(browser), reject("this sign-in began in another browser"))?;
         Ok(pending)
     }
 
@@ -116,7 +116,7 @@ impl App {
 
 impl PendingSignIn {
     /// Marks the sign-in as used; returns whether it was unused.
-    pub(in crate::domain) async fn use_up(&self, transaction: &mut Transaction) -> Result<bool, DbError> {
+    pub(in crate::domain) async fn mark_used(&self, transaction: &mut Transaction) -> Result<bool, DbError> {
         let expired = "DELETE FROM platform_login
             WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
         transaction.execute(expired, values![]).await?;
@@ -129,9 +129,9 @@ impl PendingSignIn {
 fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
     let (words, tag) = state.rsplit_once('.')?;
     hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
-    let mut words = words.split('.');
-    let (at, expires_at) = (words.next()?.to_owned(), words.next()?.parse().ok()?);
-    let (browser, account) = (words.next()?.to_owned(), words.next()?.parse().ok()?);
-    let to = String::from_utf8(URL_SAFE_NO_PAD.decode(words.next()?).ok()?).ok()?;
-    Some((PendingSignIn { state: state.to_owned(), expires_at, at, account, to }, browser))
+    let mut parts = words.split('.');
+    let (at, expires_at) = (parts.next()?.to_owned(), parts.next()?.parse().ok()?);
+    let (browser, account) = (parts.next()?.to_owned(), parts.next()?.parse().ok()?);
+    let to = String::from_utf8(URL_SAFE_NO_PAD.decode(parts.next()?).ok()?).ok()?;
+    Some((PendingSignIn { state: state.to_owned(), expires_at, service: at, account, path: to }, browser))
 }

@@ -1,4 +1,4 @@
-//! Reads the parts of a grader's result that the service uses. The other parts are for people.
+//! Reads the parts of a grader's result that the service uses. The other parts are only displayed.
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 

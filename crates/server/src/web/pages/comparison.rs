@@ -1,7 +1,7 @@
 //! The page that compares two submissions to an assignment, by the scenes in which they differ.
 use super::{
     super::input::{AddressParts, QueryInput},
-    Page, PageFrame, grades, show, text,
+    Page, PageFrame, grades, render, text,
 };
 use crate::{
     domain::{FailedScenes, Staff, Submission},
@@ -25,7 +25,7 @@ pub(super) struct OtherSubmission {
 struct ComparisonPage {
     frame: PageFrame,
     slug: String,
-    both: [Submission; 2],
+    submissions: [Submission; 2],
     /// The number of scenes in which the submissions differ.
     count: usize,
     kinds: DifferingScenes,
@@ -56,31 +56,32 @@ fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     kinds
 }
 
-pub(super) async fn page(
+pub(super) async fn show_page(
     staff: Staff,
     AddressParts { course: slug, id, .. }: AddressParts,
-    QueryInput(asked): QueryInput<OtherSubmission>,
+    QueryInput(query): QueryInput<OtherSubmission>,
 ) -> Page {
-    let one = staff.submission(id).await?;
-    let assignment = staff.assignment(&one.assignment).await?;
-    let other = match asked.with.trim().parse() {
+    let first = staff.submission(id).await?;
+    let assignment = staff.assignment(&first.assignment).await?;
+    let other = match query.with.trim().parse() {
         Ok(number) => Some(staff.submission(number).await?),
-        Err(_) => staff.student_history(&assignment.slug, asked.with.trim()).await?.submissions.into_iter().next(),
+        Err(_) => staff.student_history(&assignment.slug, query.with.trim()).await?.submissions.into_iter().next(),
     };
     let missing = || {
-        let detail = format!("there is no graded submission of {:?}", asked.with.trim());
+        let detail = format!("there is no graded submission of {:?}", query.with.trim());
         let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();
         Problem { detail, remedy, ..Problem::not_found("") }
     };
     let other = other.ok_or_else(missing)?;
-    let result = |of: &Submission| of.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
-    let results = [result(&one)?, result(&other)?];
-    let kept = staff.kept_results(&results).await?;
-    let [Some(first), Some(second)] = results.map(|result| kept.get(&result)) else { return Err(missing()) };
-    let kinds = find_differing(&first.failed, &second.failed);
+    let find_result = |of: &Submission| of.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
+    let results = [find_result(&first)?, find_result(&other)?];
+    let stored = staff.stored_results(&results).await?;
+    let [Some(result), Some(other_result)] = results.map(|number| stored.get(&number)) else { return Err(missing()) };
+    let kinds = find_differing(&result.failed, &other_result.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
     let frame = grades::class_frame(&staff, &assignment).with_parent(address, "Side by side");
-    show(&ComparisonPage { frame, slug, both: [one, other], count: kinds.values().map(Vec::len).sum(), kinds })
+    let count = kinds.values().map(Vec::len).sum();
+    render(&ComparisonPage { frame, slug, submissions: [first, other], count, kinds })
 }
 
 #[cfg(test)]

@@ -4,12 +4,12 @@ use crate::domain::{Member, view::Submission};
 use crate::{
     db::{DbError, Row},
     problem::Problem,
-    shown::GradeParts,
     values,
+    visible_grade::GradeParts,
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The scenes that a result does not accept. Each scene's name leads to the code of its verdict.
+/// The scenes that a result does not accept. The key is the scene's name, and the value is the code of its verdict.
 pub type FailedScenes = BTreeMap<String, String>;
 
 /// The scenes that changed from one attempt to the next.
@@ -18,21 +18,21 @@ pub struct AttemptChange {
     /// The number of the attempt with which this attempt is compared.
     pub since: i64,
     /// The scenes that were not accepted before, and are now.
-    pub right: Vec<String>,
+    pub newly_right: Vec<String>,
     /// The scenes that were accepted before, and are not now.
-    pub wrong: Vec<String>,
+    pub newly_wrong: Vec<String>,
     /// Whether no scene is accepted now.
     pub is_all_wrong: bool,
 }
 
 impl AttemptChange {
     /// Compares an attempt with the earlier attempt `since`.
-    pub fn compare(since: i64, old: &KeptResult, new: &KeptResult) -> Self {
-        let names = |kept: &KeptResult| kept.failed.keys().cloned().collect::<BTreeSet<_>>();
+    pub fn compare(since: i64, old: &StoredResult, new: &StoredResult) -> Self {
+        let names = |result: &StoredResult| result.failed.keys().cloned().collect::<BTreeSet<_>>();
         let is_all_wrong = !new.parts.scenes.is_empty() && !new.parts.scenes.contains('r');
         let (old, new) = (names(old), names(new));
-        let (right, wrong) = ((&old - &new).into_iter().collect(), (&new - &old).into_iter().collect());
-        Self { since, right, wrong, is_all_wrong }
+        let [newly_right, newly_wrong] = [&old - &new, &new - &old].map(|names| names.into_iter().collect());
+        Self { since, newly_right, newly_wrong, is_all_wrong }
     }
 }
 
@@ -44,7 +44,7 @@ fn read(text: &str) -> FailedScenes {
 
 /// The details that are stored with a result: the scenes that are not accepted, and the parts of the grade.
 #[derive(Debug, Default)]
-pub struct KeptResult {
+pub struct StoredResult {
     /// The scenes that the result does not accept.
     pub failed: FailedScenes,
     /// The points of groups and the likely mistakes; empty for results that an older version stored.
@@ -59,7 +59,7 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn kept_results(&self, results: &[i64]) -> Result<BTreeMap<i64, KeptResult>, Problem> {
+    pub async fn stored_results(&self, results: &[i64]) -> Result<BTreeMap<i64, StoredResult>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT result.id, result.failed, result.parts FROM result
             JOIN submission ON submission.id = result.submission
@@ -68,12 +68,12 @@ impl Member {
                AND result.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})";
         let results = serde_json::to_string(results).unwrap_or_default();
         let rows = transaction.rows(statement, values![self.course, results]).await?;
-        let kept = |row: &Row| {
+        let read_row = |row: &Row| {
             let parts = row.maybe_text("parts")?.and_then(|parts| serde_json::from_str(&parts).ok());
             let failed = read(&row.text("failed")?);
-            Ok((row.int("id")?, KeptResult { failed, parts: parts.unwrap_or_default() }))
+            Ok((row.int("id")?, StoredResult { failed, parts: parts.unwrap_or_default() }))
         };
-        Ok(rows.iter().map(kept).collect::<Result<_, DbError>>()?)
+        Ok(rows.iter().map(read_row).collect::<Result<_, DbError>>()?)
     }
 
     /// Returns the changes between consecutive graded attempts of one person, newest first. Each is stored under the
@@ -86,11 +86,11 @@ impl Member {
         let graded = attempts.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();
         let results: Vec<i64> = graded.iter().filter(|(one, _)| !one.is_withheld).map(|(_, result)| *result).collect();
-        let kept = self.kept_results(&results).await?;
+        let stored = self.stored_results(&results).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
             later.grade.as_ref().filter(|grade| grade.has_run())?;
-            let change = AttemptChange::compare(earlier.number, kept.get(&old)?, kept.get(&new)?);
+            let change = AttemptChange::compare(earlier.number, stored.get(&old)?, stored.get(&new)?);
             Some((later.id, change))
         };
         Ok(graded.windows(2).filter_map(change).collect())
@@ -105,16 +105,16 @@ mod tests {
     fn an_attempt_makes_scenes_right_and_others_wrong() {
         let (old, new) = (read("WA a/b\nTLE a/c d\n"), read("WA a/c d\nRTE e"));
         assert_eq!(old["a/c d"], "TLE");
-        let kept = |failed, scenes: &str| KeptResult {
+        let result = |failed, scenes: &str| StoredResult {
             failed,
             parts: GradeParts { scenes: scenes.to_owned(), ..GradeParts::default() },
         };
-        let change = AttemptChange::compare(3, &kept(old, "we|r"), &kept(new, "re|e"));
+        let change = AttemptChange::compare(3, &result(old, "we|r"), &result(new, "re|e"));
         assert!(
             !change.is_all_wrong
-                && AttemptChange::compare(3, &kept(read(""), "r"), &kept(read("WA e"), "w")).is_all_wrong
+                && AttemptChange::compare(3, &result(read(""), "r"), &result(read("WA e"), "w")).is_all_wrong
         );
-        assert_eq!((change.right, change.wrong), (vec!["a/b".to_owned()], vec!["e".to_owned()]));
+        assert_eq!((change.newly_right, change.newly_wrong), (vec!["a/b".to_owned()], vec!["e".to_owned()]));
         assert_eq!(read(""), FailedScenes::new());
     }
 }

@@ -47,8 +47,8 @@ impl LatePolicy {
     /// `None` means that the submission is in time, or that the assignment has no rule for late submissions.
     pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // The delay is at most the allowed late days, even if an extension was withdrawn. If late uploads are no longer
-        // accepted, earlier late uploads keep their deduction.
+        // The delay is at most the allowed late days, even if an extension was withdrawn. Earlier late uploads keep
+        // their deduction even if late uploads are no longer accepted.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
@@ -100,16 +100,16 @@ mod tests {
     #[test]
     fn a_day_ends_at_the_same_time_of_the_day_when_the_clocks_change() {
         // The evening before the clocks go back in Berlin: the day has 25 hours.
-        let due = crate::calendar::read("2026-10-24T23:59+02:00").expect("a moment");
+        let due = crate::calendar::parse("2026-10-24T23:59+02:00").expect("a moment");
         let zone = Some(Tz::Europe__Berlin);
         let policy = LatePolicy { due_at: Some(due), late_days: 2, late_percent: 10, time_zone: zone };
         let days = |came_at: &str| {
-            let came_at = crate::calendar::read(came_at).expect("a moment");
+            let came_at = crate::calendar::parse(came_at).expect("a moment");
             policy.lateness(None, came_at).map(|late| late.days)
         };
         assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
         assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));
-        assert_eq!(policy.closes_at(due), crate::calendar::read("2026-10-26T23:59+01:00").expect("a moment"));
+        assert_eq!(policy.closes_at(due), crate::calendar::parse("2026-10-26T23:59+01:00").expect("a moment"));
         assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY_MILLIS);
     }
 }
