@@ -88,15 +88,15 @@ class _Session:
         return answer, rest
 
 
-def _numbers(data: bytes, *shape: int) -> NDArray[np.float64]:
+def _as_doubles(data: bytes, *shape: int) -> NDArray[np.float64]:
     """Returns an array that shares the memory of the bytes."""
     return np.frombuffer(data, dtype=np.float64).reshape(shape)
 
 
 def scenes() -> list[str]:
     """Returns the names of the built-in scenes, in the form for ``Scene``."""
-    listed, _ = _Session().ask("scenes")
-    groups = [group for assignment in listed["assignments"] for group in assignment["groups"]]
+    answer, _ = _Session().ask("scenes")
+    groups = [group for assignment in answer["assignments"] for group in assignment["groups"]]
     return [f"asset:{group['group']}/{name}" for group in groups for name in group["names"]]
 
 
@@ -141,8 +141,8 @@ class Scene:
             raise Error(str(error)) from None
         self.duration, self.time_step, self.steps, self._records_per_step = times
         positions, velocities, masses, radii = numbers
-        self.positions, self.velocities = _numbers(positions, -1, 2), _numbers(velocities, -1, 2)
-        self.masses, self.radii = _numbers(masses, -1), _numbers(radii, -1)
+        self.positions, self.velocities = _as_doubles(positions, -1, 2), _as_doubles(velocities, -1, 2)
+        self.masses, self.radii = _as_doubles(masses, -1), _as_doubles(radii, -1)
         self.fixed = np.frombuffer(fixed, dtype=np.bool_)
         self.edges = np.array(edges, dtype=np.intp).reshape(-1, 2)
 
@@ -154,19 +154,19 @@ SceneLike = Union[Scene, PathLike]
 """A scene, or the name of a scene."""
 
 
-def _scene(scene: SceneLike) -> Scene:
+def _load_scene(scene: SceneLike) -> Scene:
     return scene if isinstance(scene, Scene) else Scene(scene)
 
 
-_PLACE = [("record", np.int64), ("step", np.int64), ("kind", np.int32), ("first", np.int32), ("second", np.int32)]
-_IMPULSE = np.dtype([*_PLACE, ("normal_x", np.float64), ("normal_y", np.float64), ("time", np.float64)])
-_POLYNOMIAL = np.dtype([*_PLACE, ("number", np.int32), ("start", np.int64), ("size", np.int64)])
+_LOCATION = [("record", np.int64), ("step", np.int64), ("kind", np.int32), ("first", np.int32), ("second", np.int32)]
+_IMPULSE = np.dtype([*_LOCATION, ("normal_x", np.float64), ("normal_y", np.float64), ("time", np.float64)])
+_POLYNOMIAL = np.dtype([*_LOCATION, ("number", np.int32), ("start", np.int64), ("size", np.int64)])
 
 
 class Trace:
-    """A trace of a scene: the output of ``FOSSSim -o``, plain or packed by gzip.
+    """A trace of a scene: the output of ``FOSSSim -o``, plain or compressed with gzip.
 
-    A trace that is damaged or cut contains the records before the damage; ``problem`` describes it.
+    If a trace is damaged or cut, it contains the records before the damage, and ``problem`` describes it.
     ``asset:Group/name`` is the scene's recording, and ``asset:Group/name/flawed`` is a built-in wrong trace.
     """
 
@@ -174,7 +174,7 @@ class Trace:
     scene: Scene
     #: The trace's name in reports.
     name: str
-    #: The bytes of the trace, unpacked.
+    #: The decompressed bytes of the trace.
     data: bytes
     #: The positions and velocities by record, ``(records, particles, 2)``. The first record is the start. The number of
     #: records per step depends on the scene's collision handling.
@@ -190,14 +190,14 @@ class Trace:
             if not source.startswith("asset:"):
                 raise TypeError("a trace needs a scene and a source")
             scene = source[: -len("/flawed")] if source.endswith("/flawed") else source
-        self.scene = scene = _scene(scene)
+        self.scene = scene = _load_scene(scene)
         self.name = name or ("trace" if isinstance(source, bytes) else _os.fspath(source))
-        self.data = _trace(source)
+        self.data = _read_trace(source)
         positions, velocities, self.problem = _native.states(scene.name, scene.xml, self.data)
         particles = len(scene.masses)
         records = len(positions) // (16 * particles) if particles else 0
-        self.positions = _numbers(positions, records, particles, 2)
-        self.velocities = _numbers(velocities, records, particles, 2)
+        self.positions = _as_doubles(positions, records, particles, 2)
+        self.velocities = _as_doubles(velocities, records, particles, 2)
 
     def __len__(self) -> int:
         """Returns the number of records."""
@@ -240,7 +240,7 @@ class Trace:
     @property
     def coefficients(self) -> NDArray[np.float64]:
         """The coefficients of all polynomials, the highest power first, as ``numpy.polyval`` expects."""
-        return _numbers(self._logs[2], -1)
+        return _as_doubles(self._logs[2], -1)
 
     def polynomial(self, row: int) -> NDArray[np.float64]:
         """Returns the coefficients of one row of ``polynomials``."""
@@ -325,8 +325,8 @@ class Report:
         )
 
 
-def _trace(source: PathLike | bytes) -> bytes:
-    """Returns the bytes of a trace, unpacked."""
+def _read_trace(source: PathLike | bytes) -> bytes:
+    """Returns the decompressed bytes of a trace."""
     name = "" if isinstance(source, bytes) else _os.fspath(source)
     if name.startswith("asset:"):
         scene, _, flawed = name.partition("/flawed")
@@ -345,7 +345,7 @@ def _trace(source: PathLike | bytes) -> bytes:
 
 def simulate(scene: SceneLike) -> Trace:
     """Simulates a scene; returns the same trace as ``fosssim-oracle simulate``, bit for bit."""
-    scene, session = _scene(scene), _Session()
+    scene, session = _load_scene(scene), _Session()
     session.ask("simulate", scene.xml, scene=scene.name)
     _, (trace,) = session.ask("trace")
     return Trace(scene, trace, name="reference")
@@ -357,7 +357,7 @@ def _check(trace: Trace, rules: Rules, *, html: bool) -> tuple[Any, list[bytes]]
     return _Session().ask("check", scene.xml, file=trace.data, **values)
 
 
-def _traced(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None) -> Trace:
+def _resolve_trace(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None) -> Trace:
     if isinstance(scene, Trace):
         return scene
     return trace if isinstance(trace, Trace) else Trace(scene, trace)
@@ -372,7 +372,7 @@ def check(
     """
     if rules not in get_args(Rules):
         raise Error(f"rules must be both, fair or parity, not {rules!r}")
-    trace = _traced(scene, trace)
+    trace = _resolve_trace(scene, trace)
     first, (text,) = _check(trace, rules, html=False)
     data = _json.loads(text)
     fair = (data.get("fair") or {}).get("findings", [])
@@ -422,30 +422,30 @@ def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = Fa
     parts: list[bytes] = []
     values: dict[str, Any] = {"is_for_students": student}
     if suite is not None and Path(suite).suffix == ".toml":
-        beside = sorted(Path(suite).parent.rglob("*.xml"))
-        parts = [Path(suite).read_bytes(), *(scene.read_bytes() for scene in beside)]
-        values["scenes"] = [scene.relative_to(Path(suite).parent).as_posix() for scene in beside]
+        scene_files = sorted(Path(suite).parent.rglob("*.xml"))
+        parts = [Path(suite).read_bytes(), *(scene.read_bytes() for scene in scene_files)]
+        values["scenes"] = [scene.relative_to(Path(suite).parent).as_posix() for scene in scene_files]
     elif suite is not None:
         values["suite"] = _os.fspath(suite)
     if not folder.is_dir():
         raise Error(f"{folder} is not a folder of traces: a trace is Group/name.bin in it")
-    begun, _ = session.ask("suite", *parts, **values)
+    suite_answer, _ = session.ask("suite", *parts, **values)
     columns = ("group", "scene", "verdict", "points", "max_points", "likely")
     table: dict[str, list[Any]] = {name: [] for name in columns}
-    scenes = [(group["name"], scene) for group in begun["groups"] for scene in group["scenes"]]
+    scenes = [(group["name"], scene) for group in suite_answer["groups"] for scene in group["scenes"]]
     for number, (group, scene) in enumerate(scenes):
-        names = [f"{name}.bin{packed}" for name in (scene, scene.split("/")[-1]) for packed in ("", ".zst", ".gz")]
-        found = next((folder / name for name in names if (folder / name).is_file()), None)
-        trace = b"" if found is None else _trace(found)
-        judged, _ = session.ask("judge", number=number, has_trace=found is not None, file=trace)
-        for name, value in (("group", group), ("scene", scene), ("verdict", judged["verdict"])):
+        names = [f"{name}.bin{suffix}" for name in (scene, scene.split("/")[-1]) for suffix in ("", ".zst", ".gz")]
+        file = next((folder / name for name in names if (folder / name).is_file()), None)
+        trace = b"" if file is None else _read_trace(file)
+        result, _ = session.ask("judge", number=number, has_trace=file is not None, file=trace)
+        for name, value in (("group", group), ("scene", scene), ("verdict", result["verdict"])):
             table[name].append(value)
-    whole, (data,) = session.ask("grade", name=folder.name)
-    table["likely"] = [scene["likely"] for scene in whole["scenes"]]
-    table["points"] = [float(scene["points"]) for scene in whole["scenes"]]
-    table["max_points"] = [float(scene["of"]) for scene in whole["scenes"]]
-    points, of = float(whole["points"]), float(whole["of"])
-    return Grade(folder.name, begun["suite"], whole["verdict"], points, of, table, _json.loads(data))
+    graded, (data,) = session.ask("grade", name=folder.name)
+    table["likely"] = [scene["likely"] for scene in graded["scenes"]]
+    table["points"] = [float(scene["points"]) for scene in graded["scenes"]]
+    table["max_points"] = [float(scene["of"]) for scene in graded["scenes"]]
+    points, max_points = float(graded["points"]), float(graded["of"])
+    return Grade(folder.name, suite_answer["suite"], graded["verdict"], points, max_points, table, _json.loads(data))
 
 
 Point = Sequence[float]

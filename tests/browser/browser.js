@@ -1,4 +1,4 @@
-// What the browser tests share: the browser, a page that is opened with everything that it complains of, and axe-core.
+// The common parts of the browser tests: the browser, a page with its errors and warnings, and axe-core.
 import { strict as assert } from "node:assert";
 import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
@@ -24,15 +24,15 @@ export const launch = () =>
     ],
   });
 
-// Writes a program like a student's: the sample without the mark by which the grader knows its own programs.
+// Writes a program like a student's: the sample without the mark by which the grader recognizes its own programs.
 export function writeSample(path, folder = programs) {
   const bytes = readFileSync(join(folder, "fosssim-sample"));
   bytes.write("FOSSSIM", bytes.indexOf("fosssim-sample, with mistake id \0"));
   writeFileSync(path, bytes, { mode: 0o755 });
 }
 
-// A page, and what it complains of: errors, warnings, and every request that leaves the disk.
-export async function opened(browser, html, { scheme = "light", script = true, hash = "" } = {}) {
+// Opens a page, and collects its errors, its warnings, and all requests to the network.
+export async function openPage(browser, html, { scheme = "light", script = true, hash = "" } = {}) {
   const context = await browser.newContext({
     colorScheme: scheme,
     javaScriptEnabled: script,
@@ -48,14 +48,14 @@ export async function opened(browser, html, { scheme = "light", script = true, h
     (request) => /^(file|blob|data):/.test(request.url()) || complaints.push(`request ${request.url()}`),
   );
   await page.goto(pathToFileURL(html).href + hash);
-  // A page without scenes to look at has no script that would be ready.
+  // A page without scenes has no script that becomes ready.
   const isScripted = script && (await page.locator("script").count()) > 0;
   if (isScripted) await page.waitForSelector("html[data-ready]");
   return { page, complaints, close: () => context.close() };
 }
 
-// Nothing that keeps somebody out. The page's policy allows no foreign script: the checker runs as the debugger's own.
-export async function judgeAccessibility(page) {
+// Checks that the page is accessible. The page's policy allows no foreign scripts, so the debugger runs axe-core.
+export async function checkAccessibility(page) {
   await page.evaluate(axe + ";0");
   const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
   const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");

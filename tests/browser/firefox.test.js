@@ -1,5 +1,5 @@
-// The page in Firefox: its recordings and reports are the program's there, too, to the last bit. Firefox is driven by
-// WebDriver BiDi, which Debian's speaks by itself. FOSSSIM_PAGE names the page, FOSSSIM_BIN the programs, FIREFOX the browser.
+// Tests the page in Firefox: its recordings and reports equal the program's bit for bit. Firefox is driven by WebDriver
+// BiDi, which Debian's Firefox supports. FOSSSIM_PAGE names the page, FOSSSIM_BIN the programs, FIREFOX the browser.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
 import { createHash } from "node:crypto";
@@ -46,27 +46,27 @@ after(async () => {
   if (folder) rmSync(folder, { recursive: true, force: true });
 });
 
-async function opened() {
+async function openPage() {
   const page = await browser.newPage(),
     complaints = [];
   page.on("console", (message) => ["error", "warn"].includes(message.type()) && complaints.push(message.text()));
   page.on("pageerror", (error) => complaints.push(String(error)));
   await page.goto(pathToFileURL(html).href);
-  await until(() => page.evaluate(() => "ready" in document.documentElement.dataset), "the page is ready");
+  await waitUntil(() => page.evaluate(() => "ready" in document.documentElement.dataset), "the page is ready");
   return { page, complaints };
 }
 
-// The page's policy forbids to make functions of words, which puppeteer's own waiting does.
-async function until(holds, what) {
+// The page's policy forbids functions that are created from text, which puppeteer's own waiting needs.
+async function waitUntil(holds, what) {
   for (const end = Date.now() + 60_000; Date.now() < end; await sleep(50)) if (await holds()) return;
   assert.fail(`${what}: not within a minute`);
 }
 
-// Firefox writes `x.html.part` beside an empty `x.html` while it saves.
-async function saved(page, button, file) {
+// While it saves, Firefox writes `x.html.part` next to an empty `x.html`.
+async function saveFile(page, button, file) {
   const path = join(folder, file);
   await (await page.$(button)).click();
-  await until(() => existsSync(path) && readFileSync(path).length > 0 && !existsSync(`${path}.part`), file);
+  await waitUntil(() => existsSync(path) && readFileSync(path).length > 0 && !existsSync(`${path}.part`), file);
   return readFileSync(path, "utf8");
 }
 
@@ -89,9 +89,12 @@ for (const [name, mistake] of [
       "-o",
       join(folder, trace),
     ]);
-    const { page, complaints } = await opened();
+    const { page, complaints } = await openPage();
     await (await page.$("#pick")).uploadFile(join(folder, trace));
-    await until(() => page.evaluate(() => document.documentElement.dataset.checked === "1"), "the trace is checked");
+    await waitUntil(
+      () => page.evaluate(() => document.documentElement.dataset.checked === "1"),
+      "the trace is checked",
+    );
     assert.match(await page.$eval("#said", (said) => said.textContent), mistake ? /: wrong answer/ : /: accepted/);
     for (const format of ["html", "json"]) {
       const own = spawnSync(join(programs, "fosssim-oracle"), ["check", `asset:${name}`, trace, "--format", format], {
@@ -100,7 +103,7 @@ for (const [name, mistake] of [
         maxBuffer: 1 << 28,
       });
       assert.equal(own.status, mistake ? 1 : 0, own.stderr);
-      const file = await saved(page, `#save-${format}`, trace.replace(".bin", `.${format}`));
+      const file = await saveFile(page, `#save-${format}`, trace.replace(".bin", `.${format}`));
       assert.ok(file === own.stdout, `${format} differs: ${file.length} and ${own.stdout.length} characters`);
     }
     assert.deepEqual(complaints, []);
@@ -109,7 +112,7 @@ for (const [name, mistake] of [
 }
 
 test("Firefox: all scenes have the same recordings as natively", async (t) => {
-  const { page } = await opened();
+  const { page } = await openPage();
   const names = ["t1m1", "t1m2", "t1m3", "t2m1", "t2m2", "t2m3"].flatMap((assignment) =>
     readdirSync(join(root, "assets", assignment), { withFileTypes: true })
       .filter((one) => one.isDirectory())
@@ -117,7 +120,7 @@ test("Firefox: all scenes have the same recordings as natively", async (t) => {
         readdirSync(join(root, "assets", assignment, group)).map((file) => `${group}/${file.replace(".xml", "")}`),
       ),
   );
-  // The page's own worker and module; its script shows nothing to others.
+  // Use the page's worker and module directly, because its script exports nothing.
   await page.evaluate(async () => {
     const worker = new Worker(URL.createObjectURL(new Blob([document.getElementById("worker").textContent])));
     const packed = Uint8Array.from(atob(document.getElementById("module").textContent.trim()), (c) => c.charCodeAt(0));

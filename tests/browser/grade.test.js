@@ -1,17 +1,17 @@
-// Pages of whole gradings in a real browser: one submission, and a class of three hundred.
-// FOSSSIM_BIN names the folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
+// Tests pages of whole gradings in a real browser: one submission, and a class of three hundred. FOSSSIM_BIN names the
+// folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
 import { chmodSync, mkdirSync, mkdtempSync, readdirSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { judgeAccessibility, launch, opened, programs, writeSample } from "./browser.js";
+import { checkAccessibility, launch, openPage, programs, writeSample } from "./browser.js";
 
 let browser, folder;
 const HOSTILE = "<img src=x onerror=alert(1)>'&";
 
-// Without a sandbox nothing can be graded here.
+// Without a sandbox, nothing can be graded.
 const doctor = spawnSync(join(programs, "fosssim-oracle"), ["doctor"]);
 const required = (process.env.FOSSSIM_REQUIRE ?? "").split(",");
 const skip =
@@ -37,13 +37,13 @@ scenes = ["asset:GeometricTests/pair-becomes-rigid"]
 points = 10
 `;
 
-// A copy of the sample program; its name says which mistake it makes.
-function sample(where, mistake) {
+// Writes a copy of the sample program. Its name selects the mistake that it makes.
+function copySample(where, mistake) {
   const path = join(where, mistake ? `fosssim-sample.${mistake}` : "fosssim-sample");
   writeSample(path);
   return path;
 }
-function script(where, name, text) {
+function writeScript(where, name, text) {
   const path = join(where, name);
   writeFileSync(path, `#!/bin/sh\n${text}\n`);
   chmodSync(path, 0o755);
@@ -60,16 +60,16 @@ before(async () => {
   writeFileSync(join(folder, "suite.toml"), SUITE);
   mkdirSync(join(folder, "class"));
   for (const mistake of ["", "pe-linear-one-ab", "failsafe-angular-overwritten", "pp-contact-reversed"])
-    sample(join(folder, "class"), mistake);
+    copySample(join(folder, "class"), mistake);
   // 10 MB of markup on standard output.
-  script(
+  writeScript(
     join(folder, "class"),
     "noisy",
     "l='<script>alert(1)</script><b>&amp;'; i=0; while [ $i -lt 11 ]; do l=$l$l; i=$((i+1)); done\ni=0; while [ $i -lt 160 ]; do echo \"$l\"; i=$((i+1)); done; exit 3",
   );
-  script(join(folder, "class"), HOSTILE, "echo '\u202e<svg onload=alert(1)>' >&2; exit 4");
+  writeScript(join(folder, "class"), HOSTILE, "echo '\u202e<svg onload=alert(1)>' >&2; exit 4");
   for (let number = readdirSync(join(folder, "class")).length; number < 300; number++)
-    script(join(folder, "class"), `student ${number}`, `exit ${1 + (number % 7)}`);
+    writeScript(join(folder, "class"), `student ${number}`, `exit ${1 + (number % 7)}`);
   grade("class", "--suite", "suite.toml", "--output", "out");
   browser = await launch();
 });
@@ -96,18 +96,18 @@ for (const [name, start] of [
     const html = report(start);
     assert.ok(statSync(html).size < 700_000, `${statSync(html).size}`);
     for (const scheme of ["light", "dark"]) {
-      const { page, complaints, close } = await opened(browser, html, { scheme });
+      const { page, complaints, close } = await openPage(browser, html, { scheme });
       page.on("dialog", () => assert.fail("a dialog"));
       await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
-      await judgeAccessibility(page);
+      await checkAccessibility(page);
       assert.equal(await page.locator("img, b, main svg[onload]").count(), 0);
-      // A command names the scene as commands take it.
+      // The command names the scene in the form that commands accept.
       if (name === "wrong polynomial")
         assert.match(await page.locator("main").innerText(), /detect --scene asset:ContinuousTimeTests\/spinning-edge/);
       assert.deepEqual(complaints, []);
       await close();
     }
-    const { page, close } = await opened(browser, html, { script: false });
+    const { page, close } = await openPage(browser, html, { script: false });
     assert.match(
       await page.locator("h1").innerText(),
       name === "accepted" ? /accepted/ : /wrong answer|run-time error/,
@@ -118,7 +118,7 @@ for (const [name, start] of [
 }
 
 test("what a program printed is text, and no more of it than there is room for", { skip }, async () => {
-  const { page, close } = await opened(browser, report("noisy"));
+  const { page, close } = await openPage(browser, report("noisy"));
   await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
   const text = await page.getByRole("region", { name: "Standard output" }).first().innerText();
   assert.match(text, /^<script>alert\(1\)<\/script><b>&amp;/);
@@ -127,7 +127,7 @@ test("what a program printed is text, and no more of it than there is room for",
 });
 
 test("a whole diagnosis by keyboard", { skip }, async () => {
-  const { page, complaints, close } = await opened(browser, report("fosssim-sample.failsafe"));
+  const { page, complaints, close } = await openPage(browser, report("fosssim-sample.failsafe"));
   const tabs = async (wanted, most = 60) => {
     for (let times = 0; times < most; times++) {
       await page.keyboard.press("Tab");
@@ -135,7 +135,7 @@ test("a whole diagnosis by keyboard", { skip }, async () => {
     }
     assert.fail(`${wanted} is not reached`);
   };
-  // The first card is open on its first wrong step.
+  // The first card is open at its first wrong step.
   const article = page.locator("article.case").first();
   assert.match(await article.locator(".say").innerText(), /is wrong by itself/);
   const first = await article.locator(".stepbox").inputValue();
@@ -144,7 +144,7 @@ test("a whole diagnosis by keyboard", { skip }, async () => {
   assert.equal(Number(await article.locator(".stepbox").inputValue()), Number(first) - 1);
   await page.keyboard.press("n");
   assert.equal(await article.locator(".stepbox").inputValue(), first);
-  // After the impulses, before the failsafe; then who is tested with whom.
+  // After the impulses and before the failsafe, and then the tested pairs.
   await tabs("input[type=checkbox]");
   await page.keyboard.press("Space");
   assert.match(await article.locator(".facts").innerText(), /Impact zones of the reference/);
@@ -166,7 +166,7 @@ test("a whole diagnosis by keyboard", { skip }, async () => {
 test("a class of three hundred is sorted, searched, and grouped by mistake", { skip }, async (t) => {
   const html = join(folder, "out/index.html");
   const began = performance.now();
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   t.diagnostic(`class page: ${statSync(html).size} bytes, open after ${Math.round(performance.now() - began)} ms`);
   assert.ok(statSync(html).size < 5_000_000);
   const rows = page.locator("table.sortable").first().locator("tbody tr");
@@ -177,9 +177,9 @@ test("a class of three hundred is sorted, searched, and grouped by mistake", { s
   assert.match(await rows.last().innerText(), /^fosssim-sample\s+accepted/);
   await page.getByRole("searchbox").fill("pe-linear");
   assert.equal(await rows.filter({ visible: true }).count(), 1);
-  // Those that end with the same exit code are one cluster each.
+  // Submissions that end with the same exit code form a cluster.
   assert.ok((await page.locator(".cluster").count()) >= 7);
-  await judgeAccessibility(page);
+  await checkAccessibility(page);
   await rows.filter({ visible: true }).getByRole("link").click();
   await page.waitForSelector("html[data-ready]");
   assert.match(await page.locator("h1").innerText(), /pe-linear-one-ab: wrong answer/);
@@ -188,14 +188,14 @@ test("a class of three hundred is sorted, searched, and grouped by mistake", { s
 });
 
 test("a page of eighty scenes that fail stays small", { skip }, async (t) => {
-  const program = sample(folder, "response-halved");
+  const program = copySample(folder, "response-halved");
   grade(program, "--hints", "full", "--format", "html=whole.html");
   const html = join(folder, "whole.html");
   assert.ok(statSync(html).size < 3_000_000, `${statSync(html).size}`);
   const began = performance.now();
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   t.diagnostic(`suite page: ${statSync(html).size} bytes, open after ${Math.round(performance.now() - began)} ms`);
-  // Scenes are searched by what is said of them.
+  // Scenes are searched by their texts.
   await page.getByLabel("Filter").fill("Head-On-Equal");
   assert.deepEqual(await page.locator("article.case:visible h3").allInnerTexts(), [
     "wrong answer ContinuousTimeTests/head-on-equal-masses",

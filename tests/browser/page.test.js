@@ -1,5 +1,5 @@
-// The page in the browser: traces are dropped on it, scenes written, pairs moved; and its answers are the program's, to
-// the last bit. FOSSSIM_PAGE names the page (scripts/browser-page); without it, and without the target, nothing is tried.
+// Tests the page in a browser: traces are dropped, scenes written, and pairs moved. Its answers equal the program's bit
+// for bit. FOSSSIM_PAGE names the page (scripts/browser-page); without it, and without the target, nothing is tried.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
 import {
@@ -19,7 +19,7 @@ import { tmpdir } from "node:os";
 import { join, resolve } from "node:path";
 import { after, before, test as node } from "node:test";
 import { gzipSync, inflateRawSync } from "node:zlib";
-import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
+import { checkAccessibility, launch, openPage, programs, root } from "./browser.js";
 
 const html = resolve(process.env.FOSSSIM_PAGE ?? join(root, "target/page/oracle.html"));
 const skip = existsSync(html) ? false : `there is no ${html}: scripts/browser-page makes it`;
@@ -38,7 +38,7 @@ after(async () => {
 });
 
 const scene = (name) => join(root, "assets/t2m2", `${name}.xml`);
-const oracle = (...words) =>
+const runOracle = (...words) =>
   spawnSync(join(programs, "fosssim-oracle"), words, { encoding: "utf8", cwd: folder, maxBuffer: 1 << 28 });
 
 function trace(name, mistake, file = "trace.bin") {
@@ -54,8 +54,8 @@ function trace(name, mistake, file = "trace.bin") {
   return join(folder, file);
 }
 
-// A frame of zstd whose blocks hold the bytes as they are.
-function zstd(bytes) {
+// Returns a zstd frame whose blocks contain the bytes uncompressed.
+function packZstd(bytes) {
   const blocks = [];
   for (let at = 0; at < bytes.length; at += 1 << 16) {
     const piece = bytes.subarray(at, at + (1 << 16)),
@@ -67,14 +67,14 @@ function zstd(bytes) {
 }
 
 const WRONG = ["GeometricTests/pair-becomes-rigid", "failsafe-angular-overwritten"];
-const said = (page) => page.locator("#said").innerText();
+const readStatus = (page) => page.locator("#said").innerText();
 async function drop(page, files) {
   const before = await page.evaluate(() => document.documentElement.dataset.checked ?? "0");
   await page.locator("#pick").setInputFiles(files);
   await page.waitForFunction((before) => (document.documentElement.dataset.checked ?? "0") !== before, before);
 }
 const report = (page) => page.frameLocator("#frame");
-async function saved(page, name, selector = page.getByRole("button", { name, exact: true })) {
+async function saveFile(page, name, selector = page.getByRole("button", { name, exact: true })) {
   const [download] = await Promise.all([page.waitForEvent("download"), selector.click()]);
   return { name: download.suggestedFilename(), bytes: readFileSync(await download.path()) };
 }
@@ -90,20 +90,20 @@ test("the page is one file of a bounded size, whose policy names no address", (t
 });
 
 test("a right trace is recognized and accepted", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   await drop(page, trace("ContinuousTimeTests/head-on-equal-masses"));
-  assert.match(await said(page), /^trace\.bin: accepted, judged in/);
+  assert.match(await readStatus(page), /^trace\.bin: accepted, judged in/);
   assert.match(await report(page).locator("h1").innerText(), /accepted/);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("who has no trace at hand sees the report on a wrong one", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   assert.ok(await page.locator("#judge").isDisabled());
   await page.getByRole("button", { name: "See a wrong trace" }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
-  assert.match(await said(page), /^flawed\.bin: wrong answer/);
+  assert.match(await readStatus(page), /^flawed\.bin: wrong answer/);
   assert.deepEqual(complaints, []);
   await close();
 });
@@ -116,17 +116,17 @@ for (const [name, mistake, words] of [
   ["ImpulsesTests/off-centre-on-turning-edge", "decision-alpha-margin", /likely mistake/],
 ]) {
   test(`${mistake}: the page's files are the program's, byte for byte, and its viewer runs`, async () => {
-    const { page, complaints, close } = await opened(browser, html);
+    const { page, complaints, close } = await openPage(browser, html);
     await drop(page, trace(name, mistake));
-    assert.match(await said(page), /^trace\.bin: wrong answer/);
+    assert.match(await readStatus(page), /^trace\.bin: wrong answer/);
     await report(page).locator("html[data-ready]").waitFor();
     assert.match(await report(page).locator("main").innerText(), words);
     for (const [button, format] of [
       ["Save report", "html"],
       ["Save JSON", "json"],
     ]) {
-      const { bytes } = await saved(page, button);
-      const own = oracle("check", `asset:${name}`, "trace.bin", "--format", format);
+      const { bytes } = await saveFile(page, button);
+      const own = runOracle("check", `asset:${name}`, "trace.bin", "--format", format);
       assert.equal(own.status, 1, own.stderr);
       assert.ok(bytes.toString() === own.stdout, `${format} differs: ${bytes.length} and ${own.stdout.length} bytes`);
     }
@@ -136,11 +136,11 @@ for (const [name, mistake, words] of [
 }
 
 test("a trace that is cut, one of another scene, a text, an empty file: each has its words, and nothing breaks", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const file = trace("ContinuousTimeTests/head-on-equal-masses");
   truncateSync(file, 1501);
   await drop(page, file);
-  assert.match(await said(page), /bad trace/);
+  assert.match(await readStatus(page), /bad trace/);
   trace("ContinuousTimeTests/head-on-equal-masses", null, "other.bin");
   await page.getByRole("button", { name: "Another trace" }).click();
   await page.locator("#scene").selectOption("GeometricTests/pair-becomes-rigid");
@@ -153,7 +153,7 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
-    const { bytes } = await saved(page, "Save JSON");
+    const { bytes } = await saveFile(page, "Save JSON");
     assert.match(bytes.toString(), words);
   }
   assert.deepEqual(complaints, []);
@@ -161,7 +161,7 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
 });
 
 test("each trace is recognized anew, and a scene that its reader chooses or drops stays", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const names = [
     "ContinuousTimeTests/head-on-equal-masses",
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
@@ -170,7 +170,7 @@ test("each trace is recognized anew, and a scene that its reader chooses or drop
   const scenes = async () => (await report(page).locator(".names").innerText()).match(/scene (\S+)/)[1];
   for (const [number, name] of names.entries()) {
     await drop(page, trace(name, null, `trace${number}.bin`));
-    assert.match(await said(page), /: accepted/, name);
+    assert.match(await readStatus(page), /: accepted/, name);
     assert.equal(await scenes(), `asset:${name}`);
   }
   const chosen = async (choice, name) => {
@@ -191,35 +191,35 @@ test("each trace is recognized anew, and a scene that its reader chooses or drop
   await chosen("own", "own.xml");
   await chosen(names[2], `asset:${names[2]}`);
   await chosen("", `asset:${names[1]}`);
-  // Of two, one is checked, and the page says so.
+  // One of two traces is checked, and the page says so.
   await drop(page, [join(folder, "trace1.bin"), join(folder, "trace0.bin")]);
-  assert.match(await said(page), /^trace0\.bin: accepted.*Not checked: trace1\.bin/s);
+  assert.match(await readStatus(page), /^trace0\.bin: accepted.*Not checked: trace1\.bin/s);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("what is no trace, and a broken scene, are told at once", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   for (const [content, words] of [
     ["Dear grader", /is not a trace: it looks like text/],
     ["", /is not a trace: it is empty/],
   ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
-    assert.match(await said(page), words);
+    assert.match(await readStatus(page), words);
   }
   await page.reload();
   await page.waitForSelector("html[data-ready]");
   writeFileSync(join(folder, "broken.xml"), readFileSync(scene(WRONG[0]), "utf8").replace('radius="', 'radios="'));
   await page.locator("#pick").setInputFiles(join(folder, "broken.xml"));
   await page.getByText("did you mean `radius`").waitFor();
-  assert.match(await page.locator("#said").evaluate((said) => getComputedStyle(said).fontFamily), /mono/i);
+  assert.match(await page.locator("#said").evaluate((element) => getComputedStyle(element).fontFamily), /mono/i);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("without a mouse one goes on from the report", async () => {
-  const { page, close } = await opened(browser, html);
+  const { page, close } = await openPage(browser, html);
   await page.locator("#pick").focus();
   await drop(page, trace(...WRONG));
   assert.equal(await page.evaluate(() => document.activeElement.id), "again");
@@ -227,7 +227,7 @@ test("without a mouse one goes on from the report", async () => {
 });
 
 test("a trace that may be one of several scenes is asked about by their names", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const names = ["implicit-euler-stiff-chain", "linearized-implicit-chain"];
   execFileSync(join(programs, "fosssim-sample"), [
     "-s",
@@ -239,56 +239,56 @@ test("a trace that may be one of several scenes is asked about by their names", 
   ]);
   await page.locator("#pick").setInputFiles(join(folder, "alike.bin"));
   await page.getByText("The trace begins like those of").waitFor();
-  for (const name of names) assert.ok((await said(page)).includes(name), await said(page));
+  for (const name of names) assert.ok((await readStatus(page)).includes(name), await readStatus(page));
   await page.locator("#scene").selectOption(`IntegratorTests/${names[0]}`);
   await page.getByText("accepted, judged in").waitFor();
-  assert.match(await said(page), /^alike\.bin: accepted/);
+  assert.match(await readStatus(page), /^alike\.bin: accepted/);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("a scene of one's own is dropped with its trace; a broken one gets the strict reader's words", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const file = trace(...WRONG);
   copyFileSync(scene(WRONG[0]), join(folder, "own.xml"));
   await drop(page, [join(folder, "own.xml"), file]);
-  const { bytes } = await saved(page, "Save JSON");
-  assert.equal(bytes.toString(), oracle("check", "own.xml", "trace.bin", "--format", "json").stdout);
+  const { bytes } = await saveFile(page, "Save JSON");
+  assert.equal(bytes.toString(), runOracle("check", "own.xml", "trace.bin", "--format", "json").stdout);
   writeFileSync(join(folder, "broken.xml"), readFileSync(scene(WRONG[0]), "utf8").replace('radius="', 'radios="'));
   await drop(page, [join(folder, "broken.xml"), file]);
-  assert.match(await said(page), /broken\.xml:\d+:\d+: unknown attribute `radios`.*did you mean `radius`/s);
+  assert.match(await readStatus(page), /broken\.xml:\d+:\d+: unknown attribute `radios`.*did you mean `radius`/s);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("packed traces are unpacked on the way; what is damaged is told", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const bytes = readFileSync(trace(...WRONG));
-  const packed = { "trace.bin.zst": zstd(bytes), "trace.bin.gz": gzipSync(bytes) };
+  const packed = { "trace.bin.zst": packZstd(bytes), "trace.bin.gz": gzipSync(bytes) };
   for (const [name, content] of Object.entries(packed)) {
     writeFileSync(join(folder, name), content);
     await drop(page, join(folder, name));
-    assert.match(await said(page), /^trace\.bin.*: wrong answer/, name);
+    assert.match(await readStatus(page), /^trace\.bin.*: wrong answer/, name);
     assert.match(await report(page).locator("main").innerText(), /angular momentum is overwritten/);
     writeFileSync(join(folder, name), content.subarray(0, content.length / 2));
     await drop(page, join(folder, name));
-    assert.match(await said(page), /cut short or damaged; copy it again/, name);
+    assert.match(await readStatus(page), /cut short or damaged; copy it again/, name);
   }
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("a trace of 1 GiB is read piece by piece", async (t) => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const file = trace("ContinuousTimeTests/head-on-equal-masses", null, "huge.bin");
   truncateSync(file, 2 ** 30);
   await drop(page, file);
-  t.diagnostic(await said(page));
-  assert.match(await said(page), /huge\.bin: /);
-  const { bytes } = await saved(page, "Save JSON");
+  t.diagnostic(await readStatus(page));
+  assert.match(await readStatus(page), /huge\.bin: /);
+  const { bytes } = await saveFile(page, "Save JSON");
   assert.equal(
     bytes.toString(),
-    oracle("check", "asset:ContinuousTimeTests/head-on-equal-masses", "huge.bin", "--format", "json").stdout,
+    runOracle("check", "asset:ContinuousTimeTests/head-on-equal-masses", "huge.bin", "--format", "json").stdout,
   );
   rmSync(file);
   assert.deepEqual(complaints, []);
@@ -302,16 +302,16 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     ["dark", 1440],
     ["dark", 390],
   ]) {
-    const { page, complaints, close } = await opened(browser, html, { scheme });
+    const { page, complaints, close } = await openPage(browser, html, { scheme });
     await page.setViewportSize({ width, height: 844 });
     const looks = async () => {
-      await judgeAccessibility(page);
+      await checkAccessibility(page);
       assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width);
     };
     await looks();
     await drop(page, file);
     await looks();
-    // Arrows go from tab to tab.
+    // The arrow keys move from tab to tab.
     await page.locator("#tab-check").focus();
     await page.keyboard.press("ArrowRight");
     assert.equal(await page.evaluate(() => document.activeElement.id), "tab-submission");
@@ -324,11 +324,11 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     await looks();
     await page.keyboard.press("Home");
     assert.equal(await page.evaluate(() => document.activeElement.id), "tab-check");
-    // The last trace is read again with one key.
+    // One key reads the last trace again.
     await report(page).locator("h1").click();
     await page.keyboard.press("r");
     await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
-    // axe talks to frames by messages, which those of a file refuse.
+    // axe communicates with frames by messages, which frames of a local file reject.
     assert.deepEqual(
       complaints.filter((one) => !one.includes("postMessage")),
       [],
@@ -338,10 +338,10 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
 });
 
 test("a report's smallest scenes are tried with one drop", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const program = "fosssim-sample.pe-linear-one-sh";
   symlinkSync(join(programs, "fosssim-sample"), join(folder, program));
-  const run = oracle("shrink", program, "--suite", "t2m2", "--format", "html", "--unsafe-no-sandbox");
+  const run = runOracle("shrink", program, "--suite", "t2m2", "--format", "html", "--unsafe-no-sandbox");
   assert.equal(run.status, 1, run.stderr);
   writeFileSync(join(folder, "report.html"), run.stdout);
   await drag(page, [join(folder, "report.html")]);
@@ -356,7 +356,7 @@ test("a report's smallest scenes are tried with one drop", async () => {
 });
 
 test("a folder of traces gets the points of the suite, as grade --traces gives them, and says what became right", async (t) => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const traces = join(folder, "traces");
   for (const group of ["GeometricTests", "ImpulsesTests"]) {
     mkdirSync(join(traces, group), { recursive: true });
@@ -369,8 +369,8 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
     await page.waitForFunction((times) => document.documentElement.dataset.marked === times, String(times), {
       timeout: 60_000,
     });
-    const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
-    assert.equal(bytes.toString(), oracle("grade", "--traces", "traces", "--format", "json").stdout);
+    const { bytes } = await saveFile(page, "Save JSON", page.locator("#save-marks"));
+    assert.equal(bytes.toString(), runOracle("grade", "--traces", "traces", "--format", "json").stdout);
   };
   await marked(1);
   t.diagnostic(await page.locator("#marks-said").innerText());
@@ -381,10 +381,10 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
     await page.locator("#marks-list").innerText(),
     /Since the last drop became right: GeometricTests\/pair-becomes-rigid/,
   );
-  await judgeAccessibility(page);
-  // Packed traces count as others do.
+  await checkAccessibility(page);
+  // Compressed traces count like others.
   const plain = join(traces, `${WRONG[0]}.bin`);
-  writeFileSync(`${plain}.zst`, zstd(readFileSync(plain)));
+  writeFileSync(`${plain}.zst`, packZstd(readFileSync(plain)));
   rmSync(plain);
   trace(WRONG[0], null, "traces/GeometricTests/pair-becomes-rigit.bin");
   await marked(3);
@@ -392,7 +392,7 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
     await page.locator("#marks-list").innerText(),
     /1 trace belongs to no scene of .*: GeometricTests\/pair-becomes-rigit\.bin/,
   );
-  // What is right is folded, below what is wrong. A scene leads to its report.
+  // Right scenes are folded below the wrong ones. A scene links to its report.
   assert.ok(!(await page.getByRole("button", { name: "pair-becomes-rigid" }).isVisible()));
   await page
     .locator("#marks-list > details", { hasText: "GeometricTests:" })
@@ -400,7 +400,7 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
     .click();
   await page.getByRole("button", { name: "pair-becomes-rigid" }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
-  assert.match(await said(page), /^pair-becomes-rigid\.bin.*: accepted/);
+  assert.match(await readStatus(page), /^pair-becomes-rigid\.bin.*: accepted/);
   assert.deepEqual(
     complaints.filter((one) => !one.includes("postMessage")),
     [],
@@ -409,25 +409,25 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
 });
 
 test("who has no traces sees some, and gets a script that makes them", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-submission").click();
   await page.getByRole("button", { name: "See some traces" }).click();
   await page.locator("#marks-list h2").first().waitFor();
   assert.match(await page.locator("#marks-list").innerText(), /A product is missing .*\(1 scene\)/);
   await page.getByText("The folder and its suite").click();
-  const { bytes } = await saved(page, "Save the script", page.locator("#save-script"));
+  const { bytes } = await saveFile(page, "Save the script", page.locator("#save-script"));
   const made = join(folder, "made");
   mkdirSync(made);
   writeFileSync(join(made, "make-traces.sh"), bytes);
   execFileSync("sh", ["make-traces.sh", join(programs, "fosssim-sample")], { cwd: made, stdio: "ignore" });
-  const { status, stdout } = oracle("grade", "--traces", "made/traces");
+  const { status, stdout } = runOracle("grade", "--traces", "made/traces");
   assert.equal(status, 0, stdout);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("a suite of one's own brings its scenes along; what is wrong with it is told with its place", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const course = join(folder, "course");
   mkdirSync(course);
   copyFileSync(scene(WRONG[0]), join(course, "own.xml"));
@@ -437,10 +437,10 @@ test("a suite of one's own brings its scenes along; what is wrong with it is tol
   await page.locator("#tab-submission").click();
   await page.locator("#pick-folder").setInputFiles(course);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
-  const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
+  const { bytes } = await saveFile(page, "Save JSON", page.locator("#save-marks"));
   assert.equal(
     bytes.toString(),
-    oracle("grade", "--traces", "course", "--suite", "course/suite.toml", "--format", "json").stdout,
+    runOracle("grade", "--traces", "course", "--suite", "course/suite.toml", "--format", "json").stdout,
   );
   writeFileSync(join(course, "suite.toml"), suite('"none*.xml"'));
   await page.locator("#pick-folder").setInputFiles(course);
@@ -450,7 +450,7 @@ test("a suite of one's own brings its scenes along; what is wrong with it is tol
   await close();
 });
 
-// What a hand does: the browser makes files, folders and handles of it, which no picker makes.
+// Drags files onto the page, so that the browser creates files, folders and handles, which a file picker does not.
 async function drag(page, paths) {
   const debug = await page.context().newCDPSession(page);
   const data = { items: [], files: paths, dragOperationsMask: 1 };
@@ -460,18 +460,18 @@ async function drag(page, paths) {
 }
 
 test("what is dragged onto the page is taken, whichever tab is open: a trace, a folder, a suite with it", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   const right = trace("ContinuousTimeTests/head-on-equal-masses");
   await page.locator("#tab-submission").click();
   await drag(page, [right]);
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
-  assert.match(await said(page), /^trace\.bin: accepted/);
-  // The program has run again: the key reads the file once more, without another drop.
+  assert.match(await readStatus(page), /^trace\.bin: accepted/);
+  // The program has run again. The key reads the file again without another drop.
   trace("ContinuousTimeTests/head-on-equal-masses", "pp-contact-reversed");
   await page.keyboard.press("r");
   await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
-  assert.match(await said(page), /^trace\.bin: wrong answer/);
-  // The report fills the page: whatever is dropped next falls on it.
+  assert.match(await readStatus(page), /^trace\.bin: wrong answer/);
+  // The report fills the page, so the next drop is on the report.
   mkdirSync(join(folder, "dragged/GeometricTests"), { recursive: true });
   trace(WRONG[0], null, `dragged/${WRONG[0]}.bin`);
   await drag(page, [join(folder, "dragged")]);
@@ -490,7 +490,7 @@ test("what is dragged onto the page is taken, whichever tab is open: a trace, a 
 });
 
 test("a scene is written: messages in place, its motion, and files that are the program's", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-try").click();
   await page.waitForSelector("#canvas[data-step]");
   const before = await page.locator("#source").inputValue();
@@ -499,12 +499,12 @@ test("a scene is written: messages in place, its motion, and files that are the 
     const { value } = document.getElementById("source");
     return value !== before && document.documentElement.dataset.tried === String(value.length);
   }, before);
-  const { bytes } = await saved(page, "trace", page.locator("#save-trace"));
-  const own = oracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
+  const { bytes } = await saveFile(page, "trace", page.locator("#save-trace"));
+  const own = runOracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
   assert.equal(own.status, 0, own.stderr);
   assert.ok(bytes.equals(readFileSync(join(folder, "own.bin"))));
-  const film = await saved(page, "film (GIF)");
-  oracle(
+  const film = await saveFile(page, "film (GIF)");
+  runOracle(
     "render",
     "asset:ContinuousTimeTests/head-on-equal-masses",
     "--size",
@@ -528,7 +528,7 @@ test("a scene is written: messages in place, its motion, and files that are the 
 });
 
 test("a pair is moved: its numbers are those of the command beside them", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-pair").click();
   await page.waitForSelector("html[data-looked]");
   for (const [preset, words] of [
@@ -547,15 +547,15 @@ test("a pair is moved: its numbers are those of the command beside them", async 
   await page.waitForFunction(
     () => document.documentElement.dataset.looked === document.getElementById("command").textContent,
   );
-  const { bytes } = await saved(page, "Save JSON", page.locator("#save-pair"));
+  const { bytes } = await saveFile(page, "Save JSON", page.locator("#save-pair"));
   const [, ...words] = (await page.locator("#command").innerText()).split(" ");
-  assert.equal(bytes.toString(), oracle(...words, "--format", "json").stdout);
+  assert.equal(bytes.toString(), runOracle(...words, "--format", "json").stdout);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("points of a pair are dragged, and the polynomials follow", async () => {
-  const { page, complaints, close } = await opened(browser, html);
+  const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-pair").click();
   await page.locator("#preset").selectOption("balls");
   const settled = () =>
@@ -565,7 +565,7 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
   await settled();
   assert.match(await page.locator("#decision").innerText(), /they collide|collision/i);
   const before = await page.locator("#command").innerText();
-  // The tip of the first arrow goes up and back, away from the other particle.
+  // The tip of the first arrow is moved up and back, away from the other particle.
   const box = await page.locator("#sketch .grip").first().boundingBox();
   await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
   await page.mouse.down();
@@ -576,7 +576,7 @@ test("points of a pair are dragged, and the polynomials follow", async () => {
   assert.notEqual(after, before);
   const [, dx, dy] = after.match(/pp:-2,0\+([^,]*),([^:]*):/).map(Number);
   assert.ok(dx < 1 && dy > 0.6, after);
-  // A hand leaves few digits, and fields and sliders say the same.
+  // Dragging leaves few digits, and fields and sliders show the same values.
   assert.ok(after.length < 90, after);
   assert.equal(Number(await page.getByRole("spinbutton", { name: "x1: dy" }).inputValue()), dy);
   assert.match(await page.locator("#decision").innerText(), /no collision/i);
@@ -601,7 +601,7 @@ test("the page of a course has its suite and scenes, and gives the points of wha
     join(course, "module.wasm"),
     inflateRawSync(Buffer.from(readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1], "base64")),
   );
-  const made = oracle(
+  const made = runOracle(
     "page",
     "--module",
     "of-a-course/module.wasm",
@@ -611,7 +611,7 @@ test("the page of a course has its suite and scenes, and gives the points of wha
     "course.html",
   );
   assert.equal(made.status, 0, made.stderr);
-  const { page, complaints, close } = await opened(browser, join(folder, "course.html"));
+  const { page, complaints, close } = await openPage(browser, join(folder, "course.html"));
   mkdirSync(join(folder, "handed/own"), { recursive: true });
   execFileSync(join(programs, "fosssim-sample"), [
     "--mistake",
@@ -628,23 +628,32 @@ test("the page of a course has its suite and scenes, and gives the points of wha
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1");
   assert.match(await page.locator("#marks-said").innerText(), /0 of 7 points by The course/);
   writeFileSync(join(course, "suite.toml"), groups(""));
-  const { bytes } = await saved(page, "Save JSON", page.locator("#save-marks"));
+  const { bytes } = await saveFile(page, "Save JSON", page.locator("#save-marks"));
   assert.equal(
     bytes.toString(),
-    oracle("grade", "--traces", "handed", "--suite", "of-a-course/suite.toml", "--for", "student", "--format", "json")
-      .stdout,
+    runOracle(
+      "grade",
+      "--traces",
+      "handed",
+      "--suite",
+      "of-a-course/suite.toml",
+      "--for",
+      "student",
+      "--format",
+      "json",
+    ).stdout,
   );
-  // The scene is found by the trace's name, too.
+  // The scene is also found by the trace's name.
   await page.getByRole("button", { name: "mine", exact: true }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
-  assert.match(await said(page), /^mine\.bin: wrong answer/);
+  assert.match(await readStatus(page), /^mine\.bin: wrong answer/);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("all scenes have the same recordings as natively", async (t) => {
-  const { page, close } = await opened(browser, html);
-  // The module in the page's own browser, one scene after the other.
+  const { page, close } = await openPage(browser, html);
+  // The module runs in the page's browser, one scene after the other.
   const names = ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1", "t2m3"].flatMap((assignment) =>
     readdirSync(join(root, "assets", assignment), { withFileTypes: true })
       .filter((one) => one.isDirectory())
@@ -694,7 +703,7 @@ const without =
   (existsSync(join(corpus, "submissions")) ? false : `there is no corpus at ${corpus}`) ||
   (spawnSync("zstd", ["--version"]).status === 0 ? false : "there is no zstd");
 node("all traces of the corpus have the same reports as natively", { skip: without }, async (t) => {
-  // The page's module, with its own glue, in this process: for the time that it takes.
+  // Run the page's module with its own code in this process, to measure the time.
   const engine = new Function(`${readFileSync(join(root, "crates/browser/page/engine.js"), "utf8")}; return engine;`)();
   const packed = readFileSync(html, "utf8").match(/id="module">([^<]*)</)[1];
   const module = new WebAssembly.Module(inflateRawSync(Buffer.from(packed, "base64")));
@@ -721,7 +730,7 @@ node("all traces of the corpus have the same reports as natively", { skip: witho
       took += performance.now() - begin;
       assert.equal(
         Buffer.from(parts[0]).toString(),
-        oracle("check", xml, "trace.bin", "--format", "json").stdout,
+        runOracle("check", xml, "trace.bin", "--format", "json").stdout,
         `${submission}/${file}`,
       );
       count += 1;

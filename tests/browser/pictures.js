@@ -16,7 +16,7 @@ const browser = await chromium.launch({
   args: ["--no-sandbox", "--disable-gpu"],
 });
 try {
-  // The folder is nobody's business: paths are relative to it.
+  // Paths are relative, so that the pictures do not show the folder.
   const scene = join(root, "assets/t2m2/HolisticTests/balls-in-a-box.xml");
   execFileSync(
     join(programs, "fosssim-sample"),
@@ -34,7 +34,7 @@ try {
   await page.waitForSelector("html[data-ready]");
   await page.screenshot({ path: join(root, "docs/report.png") });
 
-  // A class of samples.
+  // A class of sample programs.
   const students = [
     "ada",
     "bob.response-halved",
@@ -56,7 +56,7 @@ try {
   await page.setViewportSize({ width: 1180, height: 1000 });
   await page.goto(pathToFileURL(join(folder, "out/index.html")).href);
   await page.waitForSelector("html[data-ready]");
-  // Samples are called like their mistake: the student stands there instead, whose folder the path of a twice-used name tells.
+  // Sample programs are named after their mistake, so the name is replaced by the student's.
   await page.locator("a").evaluateAll((links, students) => {
     for (const link of links) {
       const [, name, mistake] = link.textContent.match(/^(?:.*?([a-z]+)\/)?fosssim-sample\.?(.*)$/) ?? [];

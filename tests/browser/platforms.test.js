@@ -1,6 +1,6 @@
-// Coming from a learning platform in Debian's Chromium: a frame in a page of another origin, a window of its own, the form by which the
-// platform answers, and what staff chooses. The platform is a small one, with a key of its own.
-// FOSSSIM_BIN names the folder with fosssim-server and fosssim-oracle; CHROMIUM the browser.
+// Tests signing in from a learning platform in Debian's Chromium: a frame in a page of another origin, a window of its
+// own, the form by which the platform answers, and what staff chooses. The platform is a small one, with a key of its
+// own. FOSSSIM_BIN names the folder with fosssim-server and fosssim-oracle; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { spawn } from "node:child_process";
 import { createPublicKey, generateKeyPairSync, sign, verify } from "node:crypto";
@@ -20,7 +20,7 @@ const { privateKey, publicKey } = generateKeyPairSync("rsa", { modulusLength: 20
 const CLAIM = "https://purl.imsglobal.org/spec/lti/claim";
 const LINKING = "https://purl.imsglobal.org/spec/lti-dl/claim";
 let browser, folder, server, address, link, platform, place;
-// Who is signed in on the platform, what they open, and what came back.
+// The person who is signed in on the platform, the page that they open, and the received answers.
 let visit, answered;
 
 const base64 = (value) => Buffer.from(typeof value === "string" ? value : JSON.stringify(value)).toString("base64url");
@@ -49,7 +49,7 @@ function message(nonce) {
   return `${text}.${sign("sha256", Buffer.from(text), privateKey).toString("base64url")}`;
 }
 
-async function answer(request, response) {
+async function respond(request, response) {
   const url = new URL(request.url, place);
   const html = (text) =>
     response
@@ -97,7 +97,7 @@ before(async () => {
   address = (await lines.next()).value.split(" ").at(-1);
   link = (await lines.next()).value.split(" ").at(-1);
   platform = createServer((request, response) =>
-    answer(request, response).catch((error) => response.writeHead(500).end(String(error))),
+    respond(request, response).catch((error) => response.writeHead(500).end(String(error))),
   );
   await new Promise((listening) => platform.listen(0, "127.0.0.1", listening));
   place = `http://127.0.0.1:${platform.address().port}`;
@@ -125,10 +125,10 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-async function person() {
+async function newPerson() {
   const context = await browser.newContext();
   const complaints = [];
-  // Of the server's pages; the platform's have no icon.
+  // Only messages about the server's pages, because the platform's pages have no icon.
   const isOurs = (message) => message.type() === "error" && message.location().url.startsWith(address);
   context.on("console", (message) => isOurs(message) && complaints.push(message.text()));
   const page = await context.newPage();
@@ -136,8 +136,8 @@ async function person() {
   return { page, context, complaints };
 }
 
-// Everybody can use the page, in light and dark.
-async function accessible(page) {
+// Checks that the page is accessible, in light and dark.
+async function checkAccessibility(page) {
   for (const colorScheme of ["dark", "light"]) {
     await page.emulateMedia({ colorScheme });
     await page.evaluate(axe + ";0");
@@ -157,12 +157,12 @@ async function accessible(page) {
 }
 
 test("a course of a platform, from its registration to a link in it", async () => {
-  const admin = await person();
+  const admin = await newPerson();
   await admin.page.goto(link);
   await admin.page.getByRole("button", { name: "Sign in" }).click();
   await admin.page.goto(`${address}/admin/platforms`);
   const form = admin.page.locator("form[action='/admin/platforms']");
-  // Moodle's addresses follow from its host; others are typed.
+  // Moodle's addresses are derived from its host. Others are typed.
   await form.getByLabel("Platform", { exact: true }).selectOption("moodle");
   await form.getByLabel("Its host").fill("moodle.example.org");
   assert.equal(await form.getByLabel("Public keyset").inputValue(), "https://moodle.example.org/mod/lti/certs.php");
@@ -181,23 +181,23 @@ test("a course of a platform, from its registration to a link in it", async () =
   await admin.page.getByRole("cell", { name: place, exact: true }).waitFor();
   await admin.page.getByRole("button", { name: "Copy Initiate login" }).click();
   await admin.page.getByRole("button", { name: "Copied" }).waitFor();
-  await accessible(admin.page);
+  await checkAccessibility(admin.page);
 
-  // In a frame there is a link, and a window of its own goes on.
+  // In a frame there is a link, which continues in a new window.
   visit = { subject: "teacher-1", name: "Tea Cher", role: "Instructor" };
-  const teacher = await person();
+  const teacher = await newPerson();
   await teacher.page.goto(`${place}/course`);
   const popup = teacher.context.waitForEvent("page");
   await teacher.page.frameLocator("iframe").getByRole("link", { name: "Open the grading server" }).click();
   const page = await popup;
   page.setDefaultTimeout(120_000);
   await page.getByRole("heading", { name: "Which course is this?" }).waitFor();
-  await accessible(page);
+  await checkAccessibility(page);
   assert.equal(await page.getByLabel("Name in addresses").inputValue(), "phys-1");
   await page.getByRole("button", { name: "Make the course" }).click();
-  // There is no assignment yet, so it is created on the way.
+  // There is no assignment yet, so it is created during the choice.
   await page.getByLabel("Title").fill("Milestone one");
-  await accessible(page);
+  await checkAccessibility(page);
   await page.getByRole("button", { name: "Create the assignment, and choose it" }).click();
   await page.getByRole("heading", { name: "Milestone one" }).waitFor();
   await page.getByText("The platform's link now opens this assignment.").waitFor();
@@ -206,9 +206,9 @@ test("a course of a platform, from its registration to a link in it", async () =
   await page.getByRole("button", { name: "Save" }).click();
   await page.getByText("Saved.").waitFor();
 
-  // A student comes straight to it, in a window of the platform.
+  // A student reaches it directly, in a window of the platform.
   visit = { subject: "student-1", name: "Stu Dent", role: "Learner" };
-  const student = await person();
+  const student = await newPerson();
   await student.page.goto(`${place}/open`);
   await student.page.getByRole("heading", { name: "Milestone one" }).waitFor();
   assert.equal(await student.page.getByRole("link", { name: "stu.dent" }).count(), 1);
@@ -217,7 +217,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   await page.reload();
   await page.getByRole("link", { name: "Settings" }).waitFor();
 
-  // A link that is chosen goes back as a form to the platform, signed by the server.
+  // A chosen link is sent to the platform as a form that the server signed.
   visit = {
     subject: "teacher-1",
     name: "Tea Cher",
@@ -233,7 +233,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   };
   await teacher.page.goto(`${place}/open`);
   await teacher.page.getByRole("radio", { name: /Milestone one/ }).check();
-  await accessible(teacher.page);
+  await checkAccessibility(teacher.page);
   await teacher.page.getByRole("button", { name: "Choose it", exact: true }).click();
   await teacher.page.getByRole("heading", { name: "The link is there" }).waitFor();
   const [header, claims, signature] = answered.split(".");

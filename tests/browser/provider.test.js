@@ -1,5 +1,5 @@
-// Signing in at an OpenID Connect provider in Debian's Chromium. The provider is `oidc-provider`, which its authors had certified.
-// FOSSSIM_BIN names the folder with fosssim-server and fosssim-oracle; CHROMIUM the browser.
+// Tests signing in at an OpenID Connect provider in Debian's Chromium. The provider is `oidc-provider`, which its
+// authors had certified. FOSSSIM_BIN names the folder with fosssim-server and fosssim-oracle; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, before, test } from "node:test";
 import { Provider } from "oidc-provider";
-import { judgeAccessibility, launch, programs } from "./browser.js";
+import { checkAccessibility, launch, programs } from "./browser.js";
 
 let browser, folder, server, address, link, web;
 
@@ -17,7 +17,7 @@ before(async () => {
   folder = mkdtempSync(join(tmpdir(), "fosssim-provider-"));
   web = createServer();
   await new Promise((listening) => web.listen(0, "127.0.0.1", listening));
-  // Another site than the server's: cookies of one are not the other's.
+  // The provider is on another site than the server, so cookies are not shared.
   const issuer = `http://localhost:${web.address().port}`;
   const options = ["--listen", "127.0.0.1:0", "--workers", "0", "--oidc-issuer", issuer, "--oidc-client", "grades"];
   server = spawn(
@@ -38,7 +38,7 @@ before(async () => {
     ],
     claims: { openid: ["sub"], email: ["email", "email_verified"], profile: ["name"] },
     pkce: { required: () => true },
-    // People are called by their addresses there.
+    // The provider names people by their addresses.
     findAccount: (_, id) => ({
       accountId: id,
       claims: () => ({ sub: id, name: `The ${id}`, email: id, email_verified: !id.startsWith("new") }),
@@ -59,14 +59,14 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-async function person() {
+async function newPerson() {
   const context = await browser.newContext();
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
   return page;
 }
 
-async function signInThere(page, id) {
+async function signInAtProvider(page, id) {
   await page.locator("input[name=login]").fill(id);
   await page.locator("input[name=password]").fill("x");
   await page.locator("button[type=submit]").click();
@@ -74,7 +74,7 @@ async function signInThere(page, id) {
 }
 
 test("people sign in where their organization has them do so", async () => {
-  const admin = await person();
+  const admin = await newPerson();
   await admin.goto(link);
   await admin.getByRole("button", { name: "Sign in" }).click();
   await admin.goto(`${address}/admin`);
@@ -89,21 +89,21 @@ test("people sign in where their organization has them do so", async () => {
   await admin.getByText("Change ada").click();
   await admin.getByRole("button", { name: "New link for ada" }).waitFor();
 
-  // A member comes to the page that they wanted, and needs no link.
-  const ada = await person();
+  // A member reaches the requested page, and needs no link.
+  const ada = await newPerson();
   await ada.goto(`${address}/c/physics`);
-  await judgeAccessibility(ada);
+  await checkAccessibility(ada);
   await ada.getByRole("link", { name: "Sign in with Uni" }).click();
-  await signInThere(ada, "ada@uni.example");
+  await signInAtProvider(ada, "ada@uni.example");
   await ada.waitForURL(`${address}/c/physics`);
   await ada.getByRole("heading", { name: "Physics" }).waitFor();
   const cookies = await ada.context().cookies(address);
   assert.ok(cookies.every(({ httpOnly, sameSite }) => httpOnly && sameSite === "Lax"));
   await ada.goto(`${address}/account`);
   await ada.getByText("You sign in with Uni").waitFor();
-  await judgeAccessibility(ada);
+  await checkAccessibility(ada);
 
-  // Signed out here, the provider still knows them: the way back is one click.
+  // After a sign-out on the server, the person is still signed in at the provider, so one click signs them in again.
   await ada.getByRole("button", { name: "Sign out" }).click();
   await ada.waitForURL(`${address}/sign-in`);
   await ada.goto(`${address}/account`);
@@ -111,30 +111,30 @@ test("people sign in where their organization has them do so", async () => {
   await ada.getByRole("heading", { name: "The ada@uni.example" }).waitFor();
 
   // A second person has an account, and no course yet.
-  const bob = await person();
+  const bob = await newPerson();
   await bob.goto(address);
   await bob.getByRole("link", { name: "Sign in with Uni" }).click();
-  await signInThere(bob, "bob@uni.example");
+  await signInAtProvider(bob, "bob@uni.example");
   await bob.waitForURL(`${address}/`);
   await bob.getByRole("link", { name: "bob", exact: true }).waitFor();
   await bob.goto(`${address}/c/physics`);
   await bob.getByRole("heading", { name: "Not found" }).waitFor();
 
-  // Neither others nor those whose address is not confirmed come in.
+  // People with other addresses, or with addresses that are not confirmed, cannot sign in.
   for (const id of ["eve@other.example", "new@uni.example"]) {
-    const eve = await person();
+    const eve = await newPerson();
     await eve.goto(address);
     await eve.getByRole("link", { name: "Sign in with Uni" }).click();
-    await signInThere(eve, id);
+    await signInAtProvider(eve, id);
     await eve.getByRole("heading", { name: "This sign-in is not possible" }).waitFor();
     await eve.goto(address);
     await eve.waitForURL(`${address}/sign-in`);
   }
 
-  // The administrator connects the account that the link led to, and signs in there from then on.
+  // The administrator connects the account of the link, and then signs in at the provider.
   await admin.goto(`${address}/account`);
   await admin.getByRole("link", { name: "Connect with Uni" }).click();
-  await signInThere(admin, "root@uni.example");
+  await signInAtProvider(admin, "root@uni.example");
   await admin.waitForURL(`${address}/account`);
   await admin.getByText("You sign in with Uni").waitFor();
   assert.equal(await admin.getByRole("link", { name: "Administration" }).count(), 1);

@@ -1,12 +1,12 @@
-// Real reports in a real browser: Debian's Chromium, driven by playwright-core.
-// FOSSSIM_BIN names the folder with fosssim-oracle and fosssim-sample; CHROMIUM the browser.
+// Tests real reports in a real browser: Debian's Chromium, driven by playwright-core. FOSSSIM_BIN names the folder with
+// fosssim-oracle and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { judgeAccessibility, launch, opened, programs, root } from "./browser.js";
+import { checkAccessibility, launch, openPage, programs, root } from "./browser.js";
 
 let browser, folder;
 
@@ -20,7 +20,7 @@ const CASES = {
   missed: ["ContinuousTimeTests/row-struck-in-one-step", "decision-half-step"],
 };
 
-function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
+function writeReport(name, { traceName = `${name}.bin`, cut = null } = {}) {
   const [scene, mistake] = CASES[name];
   const trace = join(folder, traceName);
   const html = join(folder, `${name}.html`);
@@ -43,7 +43,7 @@ function report(name, { traceName = `${name}.bin`, cut = null } = {}) {
   return html;
 }
 
-const open = (html, how) => opened(browser, html, how);
+const openReport = (html, how) => openPage(browser, html, how);
 
 before(async () => {
   folder = mkdtempSync(join(tmpdir(), "fosssim-browser-"));
@@ -56,12 +56,12 @@ after(async () => {
 
 for (const name of Object.keys(CASES)) {
   test(`${name}: no complaint, no request, accessible in light and dark`, async () => {
-    const html = report(name);
+    const html = writeReport(name);
     assert.ok(statSync(html).size < 700_000);
     for (const scheme of ["light", "dark"]) {
-      const { page, complaints, close } = await open(html, { scheme });
+      const { page, complaints, close } = await openReport(html, { scheme });
       await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
-      await judgeAccessibility(page);
+      await checkAccessibility(page);
       assert.deepEqual(complaints, []);
       await close();
     }
@@ -69,7 +69,7 @@ for (const name of Object.keys(CASES)) {
 }
 
 test("without script the essentials are there", async () => {
-  const { page, close } = await open(report("polynomial"), { script: false });
+  const { page, close } = await openReport(writeReport("polynomial"), { script: false });
   const text = await page.locator("main").innerText();
   for (const words of [/wrong answer/, /Likely mistake/, /First difference/, /differs/, /needs JavaScript/])
     assert.match(text, words);
@@ -78,7 +78,7 @@ test("without script the essentials are there", async () => {
 });
 
 test("a wrong failsafe is found by keyboard", async () => {
-  const { page, complaints, close } = await open(report("failsafe"));
+  const { page, complaints, close } = await openReport(writeReport("failsafe"));
   const step = () => page.locator(".stepbox").inputValue().then(Number);
   const said = () => page.locator(".say").innerText();
   const first = await step();
@@ -100,14 +100,14 @@ test("a wrong failsafe is found by keyboard", async () => {
   await page.locator(".stepbox").press("Enter");
   assert.equal(await step(), first);
   assert.match(await page.locator(".facts").innerText(), /momentum after the impulses.*momentum after the failsafe/s);
-  // The difference is too small or large to be judged by eye: the factor is said.
+  // The difference is too small or too large to be judged by eye, so the factor is shown.
   assert.match(await page.locator(".viewer").innerText(), /magnified .*times \(largest difference/s);
   assert.deepEqual(complaints, []);
   await close();
 });
 
 test("the picture stands in the first screen, near the difference, and no width is too small", async () => {
-  const { page, complaints, close } = await open(report("missed"));
+  const { page, complaints, close } = await openReport(writeReport("missed"));
   const top = () =>
     page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);
   for (const [width, height] of [
@@ -116,13 +116,13 @@ test("the picture stands in the first screen, near the difference, and no width 
     [390, 844],
   ]) {
     await page.setViewportSize({ width, height });
-    // So does the sentence that says what is wrong in the step.
+    // The sentence about the wrong step does the same.
     const said = await page.locator(".say").evaluate((say) => say.getBoundingClientRect().top + scrollY);
     assert.ok(said < height - 20, `${width}: ${said}`);
     assert.ok((await top()) < 0.7 * height, `${width}: ${await top()}`);
     assert.ok((await page.evaluate(() => document.documentElement.scrollWidth)) <= width, `${width}`);
   }
-  // The timeline shows a moment before one goes there; what is expected can stand beside what is there.
+  // The timeline previews a moment. The expected motion can be shown next to the actual one.
   await page.setViewportSize({ width: 1440, height: 900 });
   const picture = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
   await page.locator(".viewer canvas.picture").focus();
@@ -142,7 +142,7 @@ test("the picture stands in the first screen, near the difference, and no width 
   assert.ok((await picture()) !== near);
   await page.keyboard.press("z");
   assert.ok((await picture()) === near);
-  // A pointer drags along the timeline; what is shown stands under it, and keys go on from there.
+  // A pointer is dragged along the timeline. The shown moment is under it, and keys continue from there.
   const strip = await page.locator("canvas.strip").boundingBox(),
     steps = Number(await page.locator(".stepbox").getAttribute("max"));
   const over = (step) => [strip.x + (strip.width * (step - 0.5)) / steps, strip.y + 10];
@@ -154,7 +154,7 @@ test("the picture stands in the first screen, near the difference, and no width 
   assert.equal(await page.locator(".stepbox").inputValue(), "5");
   await page.keyboard.press("ArrowRight");
   assert.equal(await page.locator(".stepbox").inputValue(), "6");
-  // ? lists all keys, and folds the list.
+  // The key ? shows and hides the list of all keys.
   assert.equal(await page.locator(".keys").isVisible(), false);
   await page.keyboard.press("?");
   assert.match(await page.locator(".keys").innerText(), /next wrong step.*side by side/s);
@@ -165,7 +165,7 @@ test("the picture stands in the first screen, near the difference, and no width 
 });
 
 test("a wrong failsafe is told by its state: the digits of a momentum are marked, and no pair is called wrong", async () => {
-  const { page, complaints, close } = await open(report("failsafe"));
+  const { page, complaints, close } = await openReport(writeReport("failsafe"));
   const row = page.locator(".facts tr", { hasText: "momentum after the failsafe" });
   assert.equal(await row.locator("mark").count(), 1);
   assert.equal(await page.locator(".lights").count(), 0);
@@ -176,10 +176,10 @@ test("a wrong failsafe is told by its state: the digits of a momentum are marked
 });
 
 test("letters of charts are no smaller on a phone", async () => {
-  const { page, close } = await open(report("failsafe"));
+  const { page, close } = await openReport(writeReport("failsafe"));
   for (const width of [1440, 390]) {
     await page.setViewportSize({ width, height: 844 });
-    // Nothing is scrolled out of sight.
+    // No part is scrolled out of sight.
     const cut = await page.evaluate(() =>
       [...document.querySelectorAll("figure, .scroll, .bar")]
         .filter((box) => box.scrollWidth > box.clientWidth + 1)
@@ -196,7 +196,7 @@ test("letters of charts are no smaller on a phone", async () => {
 });
 
 test("a step whose impulses are wrong opens after its impulses, where its end would look right", async () => {
-  const { page, complaints, close } = await open(report("impulses"));
+  const { page, complaints, close } = await openReport(writeReport("impulses"));
   const after = page.getByRole("checkbox", { name: "after the impulses" });
   assert.ok(await after.isChecked());
   assert.match(
@@ -213,7 +213,7 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
 });
 
 test("the picture, its table and the plots show the same moment", async () => {
-  const { page, close } = await open(report("failsafe"));
+  const { page, close } = await openReport(writeReport("failsafe"));
   const before = await page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
   await page.keyboard.press("Home");
   const atStart = await page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
@@ -233,7 +233,7 @@ test("the picture, its table and the plots show the same moment", async () => {
 });
 
 test("a pair is chosen, its numbers are exact, and a command line reproduces it", async () => {
-  const { page, close } = await open(report("polynomial"));
+  const { page, close } = await openReport(writeReport("polynomial"));
   await page.locator("summary", { hasText: "Pairs" }).click();
   await page.locator("td.differs button").first().click();
   await page.locator("summary", { hasText: "To the last bit" }).click();
@@ -249,7 +249,7 @@ test("a pair is chosen, its numbers are exact, and a command line reproduces it"
 });
 
 test("a pair that is left out lights up, is selected, and is told with its calls", async () => {
-  const { page, complaints, close } = await open(report("pruned"));
+  const { page, complaints, close } = await openReport(writeReport("pruned"));
   assert.match(await page.locator(".lights").innerText(), /Wrong pairs: particle 0 - particle 1: not tested/);
   assert.match(await page.locator(".numbers h4").innerText(), /particle 0 - particle 1/);
   const cell = page.locator(".pairs td.differs button").first();
@@ -257,7 +257,7 @@ test("a pair that is left out lights up, is selected, and is told with its calls
   assert.match(await cell.getAttribute("aria-label"), /0 of 1 calls, not tested/);
   await page.locator(".lights button").nth(1).click();
   assert.match(await page.locator(".numbers h4").innerText(), /particle 0 - particle 2/);
-  // Its curves are on the page, with nothing beside them.
+  // Its curves are on the page, without neighbors.
   assert.match(
     await page.locator("section[data-pair]").first().innerText(),
     /Your trace contains no polynomials of this pair/,
@@ -267,7 +267,7 @@ test("a pair that is left out lights up, is selected, and is told with its calls
 });
 
 test("a contact that is missing lights up; findings and calls lead into the motion", async () => {
-  const { page, complaints, close } = await open(report("missed"));
+  const { page, complaints, close } = await openReport(writeReport("missed"));
   assert.match(await page.locator(".lights").innerText(), /particle 0 - particle 1: its contact is missing/);
   await page.locator(".stepbox").fill("3");
   await page.locator(".stepbox").press("Enter");
@@ -280,9 +280,9 @@ test("a contact that is missing lights up; findings and calls lead into the moti
 });
 
 test("a link leads to a moment", async () => {
-  const html = report("failsafe");
+  const html = writeReport("failsafe");
   const scene = join(root, "assets/t2m2", `${CASES.failsafe[0]}.xml`);
-  const { page, close } = await open(html, { hash: `#${new URLSearchParams({ scene, step: 3, t: 0.25 })}` });
+  const { page, close } = await openReport(html, { hash: `#${new URLSearchParams({ scene, step: 3, t: 0.25 })}` });
   assert.equal(await page.locator(".stepbox").inputValue(), "3");
   assert.equal(await page.locator("output").first().innerText(), "0.250");
   await close();
@@ -304,12 +304,12 @@ test("a motion that is too large is rounded, and the page says so", async (t) =>
   spawnSync(join(programs, "fosssim-oracle"), ["check", right, trace, "--format", "html", "--output", html]);
   assert.ok(statSync(html).size < 3_000_000, `${statSync(html).size}`);
   t.diagnostic(`180 bodies, 800 steps: ${statSync(html).size} bytes`);
-  const { page, complaints, close } = await open(html);
+  const { page, complaints, close } = await openReport(html);
   assert.match(
     await page.locator(".viewer .hint").first().innerText(),
     /too large for this page: positions are rounded to .* The records around these steps are exact: 0, 1/,
   );
-  // What is looked at is exact, and what is far from it near enough.
+  // The shown values are exact, and distant ones are approximate.
   assert.match(
     await page.locator(".say").innerText(),
     /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from the right position/,
@@ -326,7 +326,7 @@ test("a motion that is too large is rounded, and the page says so", async (t) =>
 });
 
 test("a still and a clip are saved", async () => {
-  const { page, complaints, close } = await open(report("contact"));
+  const { page, complaints, close } = await openReport(writeReport("contact"));
   const saved = async (name) => {
     const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("button", { name }).click()]);
     return [download.suggestedFilename(), readFileSync(await download.path())];
@@ -345,7 +345,7 @@ test("a still and a clip are saved", async () => {
 });
 
 test("who asks for little motion gets a step a second", async () => {
-  const { page, close } = await open(report("failsafe"));
+  const { page, close } = await openReport(writeReport("failsafe"));
   await page.emulateMedia({ reducedMotion: "reduce" });
   await page.keyboard.press("Home");
   await page.getByRole("button", { name: "Play" }).click();
@@ -355,7 +355,7 @@ test("who asks for little motion gets a step a second", async () => {
 });
 
 test("what is copied as a scene shows the same mistake when it is run", async () => {
-  const { page, complaints, close } = await open(report("failsafe"));
+  const { page, complaints, close } = await openReport(writeReport("failsafe"));
   await page.evaluate(() => {
     window.copied = "";
     document.execCommand = () => {
@@ -367,7 +367,7 @@ test("what is copied as a scene shows the same mistake when it is run", async ()
   await page.getByRole("button", { name: "Copy as scene" }).click();
   writeFileSync(join(folder, "case.xml"), await page.evaluate(() => window.copied));
   const commands = await page.locator(".numbers code").last().innerText();
-  // The command as it stands there, with the sample in the place of the student's program.
+  // The shown command, with the sample instead of the student's program.
   const run = spawnSync(
     "sh",
     [
@@ -385,7 +385,7 @@ test("what is copied as a scene shows the same mistake when it is run", async ()
 });
 
 test("a trace that is cut opens at its last step, and says why it ends", async () => {
-  const { page, complaints, close } = await open(report("contact", { cut: 1501 }));
+  const { page, complaints, close } = await openReport(writeReport("contact", { cut: 1501 }));
   assert.match(await page.locator(".mistakes").innerText(), /Stopped at step \d+ of.*the trace ends/s);
   assert.ok(Number(await page.locator(".stepbox").inputValue()) > 0);
   assert.deepEqual(complaints, []);
@@ -393,8 +393,8 @@ test("a trace that is cut opens at its last step, and says why it ends", async (
 });
 
 test("hostile names are text, and a damaged trace has its page", async () => {
-  const { page, complaints, close } = await open(
-    report("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }),
+  const { page, complaints, close } = await openReport(
+    writeReport("contact", { traceName: "<img src=x onerror=alert(1)>'\"\u202e.bin", cut: 1501 }),
   );
   page.on("dialog", () => assert.fail("a dialog"));
   assert.equal(await page.locator("img").count(), 0);
@@ -405,7 +405,7 @@ test("hostile names are text, and a damaged trace has its page", async () => {
 });
 
 test("a picture is saved as a drawing, and bodies as a scene that has the same case", async () => {
-  const { page, complaints, close } = await open(report("contact"));
+  const { page, complaints, close } = await openReport(writeReport("contact"));
   await page.locator("details.save summary").click();
   const [download] = await Promise.all([
     page.waitForEvent("download"),
@@ -415,7 +415,7 @@ test("a picture is saved as a drawing, and bodies as a scene that has the same c
   const svg = readFileSync(await download.path(), "utf8");
   assert.match(svg, /^<svg xmlns="http:\/\/www.w3.org\/2000\/svg" viewBox="0 0 960 540"/);
   assert.ok((svg.match(/<path/g) ?? []).length > 8 && !svg.includes("NaN"), svg);
-  // A contact is chosen by a click; its numbers are there, and its bodies are a scene that the program takes.
+  // A click selects a contact. Its numbers are shown, and its bodies can be saved as a scene that the program accepts.
   const canvas = page.locator(".viewer canvas.picture");
   await page.evaluate(() => {
     window.copied = "";
@@ -444,7 +444,7 @@ test("a picture is saved as a drawing, and bodies as a scene that has the same c
     { encoding: "utf8" },
   );
   assert.equal(run.status, 0, `${run.stderr}\n${scene}`);
-  // The contact comes at the same time there.
+  // The contact is at the same time there.
   const { answer } = JSON.parse(run.stdout);
   await page.locator("summary", { hasText: "To the last bit" }).click();
   const told = (await page.getByRole("region", { name: "Exact numbers" }).innerText()).match(

@@ -1,5 +1,5 @@
-// The grading server as a student and a teacher see it: real processes, Debian's Chromium, the real grader.
-// FOSSSIM_BIN names the folder with fosssim-oracle, fosssim-server and fosssim-sample; CHROMIUM the browser.
+// Tests the grading server as students and teachers see it: with real processes, Debian's Chromium, and the real
+// grader. FOSSSIM_BIN names the folder with fosssim-oracle, fosssim-server and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { spawn, spawnSync } from "node:child_process";
 import { linkSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -13,12 +13,12 @@ import { writeSample } from "./browser.js";
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const programs = process.env.FOSSSIM_BIN ?? join(root, "target/debug");
 const axe = readFileSync(createRequire(import.meta.url).resolve("axe-core/axe.min.js"), "utf8");
-// Without a sandbox nothing is graded, and a machine without one says so.
+// Without a sandbox nothing is graded, so the test is skipped with a reason.
 const sandbox = spawnSync(join(programs, "fosssim-oracle"), ["doctor"]).status === 0;
 let browser, folder, server, address, link;
 
 before(async () => {
-  // Beside the programs, so that links will do.
+  // The folder is next to the programs, so that links are sufficient.
   folder = mkdtempSync(join(programs, "service-"));
   for (const name of ["fosssim-oracle", "fosssim-server"]) linkSync(join(programs, name), join(folder, name));
   for (const name of ["upload", "suite"]) mkdirSync(join(folder, name));
@@ -61,8 +61,8 @@ after(async () => {
   rmSync(folder, { recursive: true, force: true });
 });
 
-// Somebody's browser: complains about whatever a page complains about, and about requests to others.
-async function person({ script = true } = {}) {
+// Opens a person's browser, which collects errors of pages and requests to other hosts.
+async function newPerson({ script = true } = {}) {
   const context = await browser.newContext({
     javaScriptEnabled: script,
     timezoneId: "America/St_Johns",
@@ -89,8 +89,8 @@ async function signIn(page, by) {
   await page.getByRole("heading", { name: "Courses" }).waitFor();
 }
 
-// No page is wider than its window.
-async function fits(page, places) {
+// Checks that the page is not wider than its window.
+async function checkWidth(page, places) {
   const before = page.viewportSize();
   for (const width of [1440, 1024, 390]) {
     await page.setViewportSize({ width, height: 900 });
@@ -102,8 +102,8 @@ async function fits(page, places) {
   await page.setViewportSize(before);
 }
 
-// Everybody can use the page, in light and dark.
-async function accessible(page) {
+// Checks that the page is accessible, in light and dark.
+async function checkAccessibility(page) {
   for (const colorScheme of ["dark", "light"]) {
     await page.emulateMedia({ colorScheme });
     await page.evaluate(axe + ";0");
@@ -123,13 +123,13 @@ async function accessible(page) {
 }
 
 test("a course from the first link to a regrade", { skip: !sandbox && "no sandbox here" }, async () => {
-  const teacher = await person();
+  const teacher = await newPerson();
   const { page } = teacher;
   await page.goto(`${address}/sign-in`);
-  await accessible(page);
+  await checkAccessibility(page);
   await signIn(page, link);
   await page.goto(`${address}/admin`);
-  await accessible(page);
+  await checkAccessibility(page);
   const course = page.locator("form[action='/admin/courses']");
   await course.getByLabel("Name in addresses").fill("physics");
   await course.getByLabel("Title").fill("Physics <b>of</b> spheres");
@@ -142,17 +142,17 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("button", { name: "Upload the suite" }).click();
   assert.match(await page.getByLabel("Suite").locator("option:checked").innerText(), /^One \(yours of .* UTC\)$/);
   await page.getByLabel("Visible").check();
-  await accessible(page);
+  await checkAccessibility(page);
   await page.getByRole("button", { name: "Save" }).click();
   await page.getByText("Saved.").waitFor();
-  // A class comes in by a file, which is looked at first.
+  // A class is imported from a file, which is previewed first.
   await page.goto(`${address}/c/physics/members`);
   const table = { name: "class.csv", mimeType: "text/csv", buffer: Buffer.from("Login,Name,Group\neve,Eve,7\n") };
   await page.getByRole("link", { name: "Import a class" }).click();
   await page.getByLabel("Table").setInputFiles(table);
   await page.getByRole("button", { name: "Read the table" }).click();
   await page.getByText("Columns that are not used: Group.").waitFor();
-  await accessible(page);
+  await checkAccessibility(page);
   await page.getByRole("button", { name: "Import these members" }).click();
   await page.getByRole("link", { name: "All links as a table" }).waitFor();
   await page.goto(`${address}/c/physics/members`);
@@ -166,21 +166,21 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Who").selectOption("staff");
   await page.getByRole("button", { name: "Show", exact: true }).click();
   await page.getByText("No member matches the filter.").waitFor();
-  await accessible(page);
+  await checkAccessibility(page);
 
-  // A student hands in a program with a mistake, watches its state, and reads what is wrong with it.
-  const student = await person();
+  // A student submits a program with a mistake, watches its state, and reads the report.
+  const student = await newPerson();
   await signIn(student.page, invitation);
   await student.page.getByRole("link", { name: "Physics <b>of</b> spheres" }).click();
   await student.page.getByRole("link", { name: "Milestone one", exact: true }).click();
-  await accessible(student.page);
+  await checkAccessibility(student.page);
   await student.page.locator("#file").setInputFiles(join(folder, "upload/fosssim-sample.pp-contact-reversed"));
   await student.page.getByRole("button", { name: "Hand in" }).click();
-  // The page follows by itself: nothing is clicked or loaded again from here.
+  // The page updates itself. From here on, nothing is clicked or loaded again.
   await student.page.locator(".report").waitFor();
   assert.equal(await student.page.locator("#result").innerText(), "wrong answer");
   assert.match(await student.page.locator("h1").innerText(), /0 of 10 points/);
-  // The report is a part of the page: one heading, no frame, what to do next before it, and the viewer works.
+  // The report is a part of the page: it has one heading and no frame, the next step is above it, and the viewer works.
   assert.deepEqual([await student.page.locator("h1").count(), await student.page.locator("iframe").count()], [1, 0]);
   assert.match(
     await student.page.locator("main").innerText(),
@@ -188,18 +188,18 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   );
   await student.page.locator("html[data-ready]").waitFor({ state: "attached" });
   await student.page.locator(".report canvas").first().waitFor();
-  await accessible(student.page);
+  await checkAccessibility(student.page);
 
-  // The course says how it stands.
+  // The course page shows the state.
   await student.page.goto(`${address}/c/physics`);
   assert.match(
     await student.page.getByRole("row", { name: /Milestone one/ }).innerText(),
     /wrong answer\s+Hand in\s+: Milestone one\s+0 of 10\s+1\s+never/,
   );
-  await accessible(student.page);
+  await checkAccessibility(student.page);
   const own = ["/c/physics", "/c/physics/a/m1", "/c/physics/s/1", "/account"];
-  await fits(student.page, own);
-  // What cannot be graded is refused where the file was chosen, and the next try is not hindered.
+  await checkWidth(student.page, own);
+  // A file that cannot be graded is rejected on the same page, and the next try works.
   await student.page.goto(`${address}/c/physics/a/m1`);
   await student.page
     .locator("#file")
@@ -210,28 +210,28 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   student.complaints.splice(0);
 
   // The essentials work without JavaScript.
-  const plain = await person({ script: false });
+  const plain = await newPerson({ script: false });
   await plain.page.goto(`${address}/c/physics`);
   await plain.page.waitForURL(`${address}/sign-in?to=%2Fc%2Fphysics`);
   await plain.close();
 
-  // The first page has what is open, and its state.
+  // The home page lists open assignments and their state.
   await student.page.goto(address);
   await student.page.getByRole("link", { name: /Hand in.*Milestone one/ }).waitFor();
-  await accessible(student.page);
+  await checkAccessibility(student.page);
 
-  // The teacher sees the class, and what a regrade would change before it does.
+  // The teacher sees the class, and the changes of a regrade before they are applied.
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "ada, submission 1" }).waitFor();
-  // What is likely wrong, and in which scenes.
+  // The likely mistakes and their scenes.
   assert.match(
     await page.getByRole("row", { name: /ada, submission 1/ }).innerText(),
     /ada, submission\s+1\s+of 1\s+Particle-particle: \S/,
   );
-  // The scenes are a row of colors, too.
+  // The scenes are also shown as a row of colors.
   assert.match(await page.locator("td.heat svg").getAttribute("aria-label"), /^0 of \d+ scenes accepted$/);
-  await accessible(page);
-  // Parts of it can be shown alone, and two submissions beside each other.
+  await checkAccessibility(page);
+  // The class can be filtered, and two submissions can be compared.
   await page.getByLabel("Who").selectOption({ label: "nothing handed in (1)" });
   await page.getByRole("button", { name: "Show", exact: true }).click();
   await page.getByRole("rowheader", { name: "Eve" }).waitFor();
@@ -240,20 +240,20 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Compare with").fill("ada");
   await page.getByRole("button", { name: "Compare" }).click();
   await page.getByText("Both are right on the same scenes").waitFor();
-  await accessible(page);
+  await checkAccessibility(page);
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "Regrade" }).click();
   await page.getByLabel("Reason").fill("Nobody should fail this");
   await page.getByRole("button", { name: "Regrade all without" }).click();
   await page.waitForURL(/regrades\/\d+$/);
-  // It can be applied when all are graded, and not before.
+  // The regrade can be applied only after all submissions are graded.
   const [said, applies] = await page.evaluate(() => [
     document.querySelector("[role=status]").innerText,
     document.querySelector("form[action$='/apply']") !== null,
   ]);
   assert.equal(applies, !/still/.test(said), said);
   await page.getByText("1 submission. No grades would change.").waitFor();
-  await accessible(page);
+  await checkAccessibility(page);
   await page.getByRole("button", { name: "Apply" }).click();
   await page.getByText("applied, by admin").waitFor();
   await student.page.reload();
@@ -274,14 +274,14 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   const places = ["/account", "/c/physics", ...further.map((place) => `/c/physics/${place}`), ...admin];
   for (const place of places) {
     await page.goto(address + place);
-    await accessible(page);
+    await checkAccessibility(page);
   }
-  await fits(page, places);
-  // The log has no codes, and leads to submissions.
+  await checkWidth(page, places);
+  // The log has no codes, and links to submissions.
   await page.goto(`${address}/c/physics/audit`);
   await page.getByText("wrong answer: 0 of 10 points").first().waitFor();
   await page.getByRole("link", { name: "ada, submission 1" }).first().waitFor();
-  // A date is typed in one's own zone, and kept as a moment.
+  // A date is typed in the reader's time zone, and stored as a time.
   await page.goto(`${address}/c/physics/a/m1/settings`);
   assert.equal(
     await page.locator("#due-zone-name").innerText(),
@@ -301,7 +301,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.close();
 });
 
-// What the README promises of two commands and an upload, with the programs in one folder as a build leaves them.
+// Tests what the README promises about two commands and an upload, with the programs in one folder, as after a build.
 test(
   "the example course takes the program with a mistake that comes with it",
   { skip: !sandbox && "no sandbox here" },
@@ -330,7 +330,7 @@ test(
       assert.equal(await page.locator("#result").innerText(), "wrong answer");
       await page.locator("html[data-ready]").waitFor({ state: "attached" });
       assert.match(await page.locator(".report").innerText(), /Likely mistake/i);
-      await accessible(page);
+      await checkAccessibility(page);
       await context.close();
     } finally {
       const ended = new Promise((done) => example.once("exit", done));
