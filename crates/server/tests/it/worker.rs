@@ -1,4 +1,4 @@
-//! Workers on a real queue, with graders that only tests have.
+//! Tests workers on a real queue, with graders for tests.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
     queue::{self, Lane, NewJob, Notifier, QueuePolicy, Turn},
@@ -17,7 +17,7 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// Accepts everything.
+/// A grader that accepts every submission.
 #[derive(Debug, Clone)]
 struct Willing;
 
@@ -46,7 +46,7 @@ impl Grader for Willing {
     }
 }
 
-/// Jobs in the queue.
+/// Enqueues jobs.
 async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     for number in 0..jobs {
@@ -71,14 +71,14 @@ async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
     transaction.commit().await.expect("commit");
 }
 
-/// The number of jobs that are in a state.
+/// Returns the number of jobs in a state.
 async fn count(fresh: &Fresh, state: &str) -> i64 {
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let row = transaction.one("SELECT count(*) AS n FROM job WHERE state = ?", values![state]).await;
     row.and_then(|row| row.int("n")).expect("a number")
 }
 
-/// Fails on every job. It knows that it can't grade, or only fails.
+/// A grader that fails on every job. It either reports that it can't grade, or only fails.
 #[derive(Debug, Clone)]
 struct Broken {
     knows: bool,
@@ -103,7 +103,7 @@ impl Grader for Broken {
     }
 }
 
-/// A worker that can't grade is always free; it must not eat the queue.
+/// A worker that can't grade is always free, and must not take all jobs of the queue.
 #[test]
 fn a_broken_worker_costs_no_job_its_tries() {
     run(async {

@@ -109,7 +109,7 @@ mod tests {
         let filled = ["", "m", "m@1", "m@2"].map(|name| versions.name_or_default(name));
         assert_eq!(filled, ["m@2", "m@2", "m@1", "m@2"], "what is kept names its version");
         assert!(suites.check("new").is_ok() && suites.check("old").is_ok());
-        assert_eq!(suites.check("other").expect_err("unknown").detail, "suite is new or old");
+        assert_eq!(suites.check("other").expect_err("unknown").detail, "suite must be new or old");
         assert!(Suites::read(b"usage: ...").is_err());
     }
 

@@ -1,4 +1,4 @@
-//! Groups that a suite hides from students are not shown to them.
+//! Tests that students do not see groups that a suite hides from them.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::{Client, Server},
@@ -91,7 +91,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     assert!(page.contains("grade.json") && page.contains("Report as text"), "{page}");
 }
 
-/// Details that hints keep from students are on a page of their own, hidden groups or not.
+/// Details that hints withhold from students are on a separate page, with and without hidden groups.
 async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();
@@ -116,7 +116,8 @@ async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
     }
 }
 
-/// For every reader, before and after hidden groups are published: whatever is offered has the points of the head.
+/// For every reader, before and after hidden groups are published, all offered reports have the points of the page's
+/// head.
 async fn all_that_a_page_offers_tells_of_the_points_in_its_head(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();

@@ -1,4 +1,4 @@
-//! Requests of somebody with bad intentions.
+//! Tests requests of attackers.
 use crate::support::{
     engines::{Fresh, on_sqlite, run},
     server::{Answer, Client, JSON, Server, bomb, program},
@@ -49,7 +49,7 @@ async fn words_of_sql_are_words(fresh: Fresh) {
 fn other_sites_can_change_nothing() {
     run(async {
         let (_fresh, mut server, admin, _) = start(&["--workers", "0"]).await;
-        // A session as a browser has it.
+        // A session, as in a browser.
         let wish = r#"{"name": "Eve", "role": "student"}"#;
         let link = admin.send("PUT", "/api/v1/courses/physics/members/eve", JSON, wish.as_bytes()).json();
         let link = link["link"].as_str().expect("a link").rsplit('/').next().expect("a secret").to_owned();
@@ -75,12 +75,12 @@ fn other_sites_can_change_nothing() {
         ] {
             assert_eq!(post(headers), 403, "{headers:?}");
         }
-        // The cookie is no script's to read, and the API wants JSON, which no form can send.
+        // Scripts cannot read the cookie, and the API requires JSON, which no form can send.
         let answer = server.visitor().post_form("/sign-in", "token=fso_wrong").expect(401);
         assert!(answer.header("set-cookie").is_none());
         let own = [("Sec-Fetch-Site", "same-origin"), ("Content-Type", "text/plain")];
         browser.send("POST", "/api/v1/tokens", &own, br#"{"name": "x"}"#).expect(400);
-        // Signed out is signed out, also for who kept the cookie.
+        // After a sign-out, the old cookie is invalid.
         browser.headers.push(("Sec-Fetch-Site".to_owned(), "same-origin".to_owned()));
         browser.get("/account").expect(200);
         browser.post_form("/sign-out", "").expect(303);
@@ -114,7 +114,7 @@ fn cookies_and_headers_are_as_strict_as_can_be() {
             let page = server.visitor().get("/sign-in").expect(200);
             assert!(page.header(name).is_some_and(|value| value.contains(part)), "{name}: {:?}", page.headers);
         }
-        // By HTTP a cookie of the other name is none.
+        // Over HTTP, the cookie with the other name is ignored.
         let secret = cookie.split(['=', ';']).nth(1).expect("a value").to_owned();
         let plain = Client { url: server.url.clone(), headers: vec![("Cookie".into(), format!("fosssim={secret}"))] };
         plain.get("/account").expect(303);
@@ -132,7 +132,7 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         let (_fresh, server, admin, ada) = start(&["--workers", "0", "--patience", "5"]).await;
         let settings = br#"{"title": "M1", "visible": true, "settings": {"max_bytes": 100000}}"#;
         admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, settings).expect(200);
-        // Announced, and not announced: in chunks.
+        // With an announced length, and in chunks without one.
         ada.send("POST", SUBMISSIONS, &[], &vec![b'#'; 100_001]).expect(413);
         let token = &ada.headers[0].1;
         let head = |path: &str, more: &str| {
@@ -144,7 +144,7 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         stream.write_all(chunk.as_bytes()).expect("a chunk");
         stream.write_all(chunk.as_bytes()).expect("a chunk");
         assert_eq!(Answer::read(&mut stream).expect("an answer").status, 413);
-        // A form that is nothing but names, and one whose file is too large.
+        // A form that contains only names, and a form whose file is too large.
         let form = [("Content-Type", "multipart/form-data; boundary=x")];
         let head_only = format!("--x\r\nContent-Disposition: form-data; name=\"{}", "x".repeat(90_000 * 10));
         ada.send("POST", SUBMISSIONS, &form, head_only.as_bytes()).expect(400);
@@ -154,7 +154,8 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
         // JSON has its own limit.
         let long = format!(r#"{{"name": "{}"}}"#, "x".repeat(2 << 20));
         ada.post_json("/api/v1/tokens", &long).expect(413);
-        // A client that stops in the middle of an upload or of JSON is not waited for. All at one time.
+        // The server does not wait for clients that stop in the middle of an upload or of JSON. All stop at the same
+        // time.
         let stopped: Vec<(&str, TcpStream)> = [
             (SUBMISSIONS, "Content-Length: 1000"),
             ("/api/v1/tokens", "Content-Type: application/json\r\nContent-Length: 1000"),
@@ -193,7 +194,7 @@ fn zip(files: &[(&str, &[u8], u32)]) -> Vec<u8> {
     archive.finish().expect("an archive").into_inner()
 }
 
-/// A tar entry of any name and kind, however wrong.
+/// Returns a tar archive with entries of any name and kind, even invalid ones.
 fn tar(entries: &[(&str, tar::EntryType, &[u8])]) -> Vec<u8> {
     let mut archive = tar::Builder::new(Vec::new());
     for (name, kind, bytes) in entries {
@@ -234,7 +235,7 @@ fn archives_can_not_leave_their_folder() {
             ("cut off", zip(&[("x", &[7; 5000], 0o644)])[..60].to_vec(), "damaged"),
             ("empty", tar(&[]), "expected a program"),
         ];
-        // Two entries of one name, as no library writes them.
+        // Two entries with the same name, which no library writes.
         let mut doubled = zip(&[("one", b"#!grade AC 1", 0o755), ("two", b"#!grade AC 2", 0o755)]);
         let places: Vec<usize> = (0..doubled.len() - 3).filter(|&at| &doubled[at..at + 3] == b"two").collect();
         places.iter().for_each(|&at| doubled[at..at + 3].copy_from_slice(b"one"));
@@ -244,7 +245,7 @@ fn archives_can_not_leave_their_folder() {
             let answer = ada.send("POST", SUBMISSIONS, &[], bytes).expect(422);
             assert!(answer.text().contains(reason), "{name}: {}", answer.text());
         }
-        // A bomb: 300 MiB of zeros in 300 KiB.
+        // An archive bomb: 300 MiB of zeros in 300 KiB.
         let mut bomb = ZipWriter::new(Cursor::new(Vec::new()));
         let options = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Deflated);
         let zeros = vec![0; 1 << 20];
@@ -256,14 +257,14 @@ fn archives_can_not_leave_their_folder() {
         assert!(bomb.len() < 1 << 20);
         let answer = ada.send("POST", SUBMISSIONS, &[], &bomb).expect(422);
         assert!(answer.text().contains("the unpacked archive has more than"), "{}", answer.text());
-        // An archive as students really make them.
+        // An archive as students create it.
         let fine = zip(&[("mine/FOSSSim", b"#!grade AC 1\n", 0o755), ("mine/src/main.cpp", b"int main() {}", 0o644)]);
         ada.send("POST", SUBMISSIONS, &[], &fine).expect(201);
         assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
     });
 }
 
-/// Finder and Explorer add files of their own; the one folder that the student packed is still the submission.
+/// Finder and Explorer add their own files. The single folder that the student packed is still the submission.
 #[test]
 fn archives_of_file_managers_are_graded() {
     run(async {
@@ -284,13 +285,13 @@ fn archives_of_file_managers_are_graded() {
     });
 }
 
-/// Archives with a build of another machine inside; and files that are none of these, by their kind.
+/// Archives that contain a build of another machine, and files of other kinds.
 #[test]
 fn archives_of_all_kinds_are_graded() {
     run(async {
         let (_fresh, _server, _, ada) = start(&["--workers", "1"]).await;
         let (program, cache) = (b"#!grade AC 77\n".as_slice(), b"of another machine".as_slice());
-        // As Explorer packs, which knows no permissions.
+        // As Explorer packs it, without permissions.
         let windows = zip(&[("project/FOSSSim", program, 0), ("project/build/CMakeCache.txt", cache, 0)]);
         let unix = tar(&[("project/FOSSSim", tar::EntryType::Regular, program)]);
         for archive in [windows, unix] {
@@ -365,7 +366,7 @@ fn addresses_lead_nowhere_else() {
         let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{}/upload", sent["id"])).expect(200);
         assert!(upload.header("set-cookie").is_none());
         assert_eq!(upload.header("content-type"), Some("application/octet-stream"));
-        // The log can't be written into by an address.
+        // An address cannot write lines into the log.
         ada.get("/nowhere%0aERROR%20forged");
         assert!(!server.log().contains("forged"));
     });
@@ -380,7 +381,7 @@ fn one_account_can_not_flood_the_server() {
         let refused = (0..40).map(|_| admin.get("/api/v1/me")).find(|answer| answer.status == 429);
         let refused = refused.expect("a refusal");
         assert!(refused.header("retry-after").is_some());
-        // Others are not hindered, nor is who is not signed in.
+        // Other people are not hindered, and neither are visitors.
         server.visitor().get("/health").expect(200);
         server.visitor().get("/sign-in").expect(200);
     });
@@ -398,7 +399,8 @@ fn the_page_that_checks_traces_is_the_graders_and_has_a_policy_of_its_own() {
     });
 }
 
-/// A bomb is refused before it is unpacked whole, and a program is taken beside many of them; refused archives count.
+/// A bomb is rejected before it is unpacked completely. Programs are accepted meanwhile, and rejected archives are
+/// counted.
 #[test]
 fn bombs_are_refused_and_counted_and_keep_nobody_waiting() {
     run(async {
@@ -418,7 +420,7 @@ fn bombs_are_refused_and_counted_and_keep_nobody_waiting() {
             (0..200).map(|_| eve.send("POST", SUBMISSIONS, &[], &damaged)).find(|answer| answer.status != 422);
         let refused = refused.expect("refused archives count").expect(429).text();
         assert!(refused.contains("more than 30 of your archives were rejected"), "{refused}");
-        // Nobody else is counted with them.
+        // Other people's archives are not counted with them.
         ada.send("POST", SUBMISSIONS, &[], &damaged).expect(422);
         assert_eq!(std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count(), 0);
     });

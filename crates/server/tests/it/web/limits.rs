@@ -1,4 +1,4 @@
-//! The shares of one account, one address, and all together in the server.
+//! Tests the limits for an account, for an address, and for the whole server.
 use crate::support::{
     disk::stored,
     engines::{Fresh, on_both_engines},
@@ -20,14 +20,14 @@ on_both_engines!(
 
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
-/// A program of this many MiB, which no two calls make alike.
+/// Returns a program of the given size in MiB, which differs for each number.
 fn large(mebibytes: usize, number: u8) -> Vec<u8> {
     let mut bytes = program("AC", u32::from(number));
     bytes.resize(mebibytes << 20, number);
     bytes
 }
 
-/// Sends a request, and reads nothing.
+/// Sends a request without reading the answer.
 fn ask(client: &Client, path: &str) -> TcpStream {
     let host = client.url.strip_prefix("http://").expect("an address");
     let mut stream = TcpStream::connect(host).expect("a connection");
@@ -48,10 +48,10 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(whole.body == bytes);
     assert_eq!(whole.header("content-length"), Some("67108864"));
     let tag = whole.header("etag").expect("a tag").to_owned();
-    // A client that has it already.
+    // A client that already has the file.
     ada.send("GET", &path, &[("If-None-Match", &tag)], b"").expect(304);
-    // Readers that take nothing: each holds little, an account has this many and no more, and the rest is not
-    // disturbed.
+    // Readers that receive nothing: each uses little memory, their number per account is limited, and other requests
+    // are not disturbed.
     let before = server.peak_memory();
     let mut readers: Vec<TcpStream> = (0..12).map(|_| ask(&ada, &path)).collect();
     for reader in &mut readers {
@@ -63,14 +63,14 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(admin.get(&path).expect(200).body == bytes, "another account has its own");
     let held = server.peak_memory() - before;
     assert!(held < 32 << 20, "{held} bytes for readers of {} each", bytes.len());
-    // An account whose readers are gone has room again.
+    // After its readers have ended, the account can download again.
     drop(readers);
     let start = Instant::now();
     while ada.send("GET", &path, &[("If-None-Match", &tag)], b"").status != 304 {
         assert!(start.elapsed() < Duration::from_secs(100), "readers that are gone are never given up");
         std::thread::sleep(Duration::from_millis(50));
     }
-    // A file that is not what it was breaks off, and does not pass for whole.
+    // The download of a changed file is broken off, so that it does not look complete.
     let digest = ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json()["digest"].clone();
     let digest = digest.as_str().expect("a digest").to_owned();
     let file = server.folder.join("store/sha256").join(&digest[..2]).join(&digest[2..]);
@@ -80,7 +80,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
     assert!(ada.get(&path).body.len() < bytes.len());
 }
 
-/// The bytes that are counted as kept, which are those that are there.
+/// Returns the counted bytes, after checking that they equal the stored bytes.
 async fn kept_bytes(fresh: &Fresh) -> i64 {
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let counted = "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS n FROM kept_bytes";
@@ -107,7 +107,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let second = ada.submit("physics", &large(2, 2));
     ada.wait_for_grade("physics", second);
     let before = stored(&server);
-    // The page shows the use in time: to staff of the course always, to others from four fifths on.
+    // The page always shows the used space to staff, and to others when four fifths are used.
     let words = |by: &Client| by.get("/c/physics").expect(200).text();
     assert!(words(&ada).contains("reports of you: 4 MiB of 5 MiB. When the space is used up"), "{}", words(&ada));
     assert!(!words(&eve).contains("Stored uploads"), "{}", words(&eve));
@@ -117,7 +117,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let answer = ada.send("POST", SUBMISSIONS, &[], &large(2, 3)).expect(507).json();
     assert_eq!(answer["type"], "urn:fosssim:quota", "{answer}");
     assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("4 MiB of 5 MiB")), "{answer}");
-    // The upload is sent by a form, whose size is unknown until it has arrived.
+    // The upload is sent in a form, so its size is unknown until it has arrived.
     let form = [
         b"--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"F\"\r\n\r\n",
         &large(2, 3)[..],
@@ -130,7 +130,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     eve.wait_for_grade("physics", of_eve);
     let answer = eve.send("POST", SUBMISSIONS, &[], &large(2, 5)).expect(507).json();
     assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("of this course")), "{answer}");
-    // An upload that is given up makes room.
+    // An expired upload frees space.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     let given_up = "UPDATE submission SET removed_at = {now} WHERE id IN (?, ?)";
     transaction.execute(given_up, values![first, of_eve]).await.expect("a statement");
@@ -138,7 +138,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     assert!(kept_bytes(&fresh).await < 3 << 20);
     let third = ada.submit("physics", &large(2, 3));
     ada.wait_for_grade("physics", third);
-    // One that is deleted, too.
+    // A removed upload, too.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     for deleted in [
         "DELETE FROM grade_change WHERE submission = ?",
@@ -197,7 +197,7 @@ async fn refused_at_the_same_time_leaves_nothing(fresh: Fresh) {
     assert_eq!(stored(&server), 1);
 }
 
-/// Thousands may send a form that they need not be signed in for, each as slowly as the server lets them.
+/// Thousands of visitors may send forms that need no sign-in, as slowly as the server allows.
 #[test]
 fn who_is_not_signed_in_sends_little() {
     crate::support::engines::run(async {

@@ -1,4 +1,4 @@
-//! Messages of learning platforms, forged ones and true ones.
+//! Tests forged and valid messages of learning platforms.
 use super::platforms::{CONTEXT, RESOURCE, connect, start};
 use crate::support::{
     engines::{Fresh, run},
@@ -15,7 +15,7 @@ const CLAIM: &str = "https://purl.imsglobal.org/spec/lti/claim";
 type Change<'a> = &'a dyn Fn(&mut Value);
 type Sign<'a> = &'a dyn Fn(&Value) -> String;
 
-/// Tries messages, each by its name, what is changed in it, how it is signed, and what the refusal says.
+/// Sends forged messages. Each has a name, a change of the claims, a signature, and the expected text of the rejection.
 fn assert_refused(server: &Server, platform: &Platform, attacks: &[(&str, Change<'_>, Sign<'_>, &str)]) {
     for (name, change, sign, said) in attacks {
         let begun = begin(server, platform);
@@ -146,7 +146,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         let fresh = Fresh::sqlite().await.expect("SQLite");
         let (server, _, platform) = start(&fresh, &[]).await;
         connect(&server, &platform);
-        // The same words with several audiences, and said to be for this one, are believed.
+        // The same claims with several audiences are accepted if the authorized party is this service.
         let begun = begin(&server, &platform);
         let mut claims = platform.claims(&begun.nonce, "ada", LEARNER);
         claims["aud"] = json!([CLIENT, "client-2"]);
@@ -154,7 +154,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         let token = KEYS[0].sign(&claims);
         let answer = come(&server, &begun, &token).expect(303);
         assert_eq!(answer.header("location"), Some("/c/physics/a/m1"), "whatever the message says it wanted");
-        // Once; in the browser that began it; and only when somebody began it.
+        // A message is accepted once, only in the browser that began the sign-in, and only if a sign-in was begun.
         let again = come(&server, &begun, &token).expect(403).text();
         assert!(again.contains("unknown, used or too old"), "{again}");
         let (mine, other) = (begin(&server, &platform), begin(&server, &platform));
@@ -168,7 +168,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         let forged = platform::Begun { cookie: mine.cookie.clone(), state: "0".repeat(64), nonce: String::new() };
         come(&server, &forged, &token).expect(403);
         come(&server, &mine, &token).expect(303);
-        // Too late.
+        // A message that arrives too late.
         let late = begin(&server, &platform);
         let mut transaction = fresh.database.read().await.expect("a transaction");
         let secret = transaction.one("SELECT value FROM server_secret", &[]).await.expect("a row");
@@ -186,7 +186,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         // A platform that is not registered is rejected.
         let unknown = server.visitor().get("/lti/login?iss=https%3A%2F%2Fevil.example&login_hint=x").expect(403);
         assert!(unknown.header("location").is_none() && unknown.text().contains("has registered this platform"));
-        // A failure of the platform is said.
+        // A failure of the platform is shown.
         let form = "state=x&error=login_required&error_description=%3Cb%3Enot%20signed%20in";
         let answer = server.visitor().post_form("/lti/launch", form).expect(403).text();
         assert!(answer.contains("login_required: &#60;b&#62;not signed in"), "{answer}");

@@ -1,4 +1,4 @@
-//! The page for monitors: Prometheus' text format, by its rules.
+//! Tests the metrics in Prometheus' text format.
 use crate::support::{
     engines::{Fresh, on_sqlite, run},
     server::{Server, program},
@@ -71,7 +71,7 @@ async fn a_monitor_sees_requests_queue_process_and_disk(fresh: Fresh) {
     assert_eq!(of(&format!("http_request_duration_seconds_bucket{{{timed},le=\"+Inf\"}}")), 1.0);
     assert_eq!(of("http_requests_total{method=\"GET\",route=\"none\",status=\"404\"}"), 1.0);
     assert_eq!(of("http_requests_in_flight"), 1.0, "this one");
-    // Neither addresses nor methods that somebody made up are series of their own.
+    // Invented addresses and methods do not become separate series.
     assert!(!text.contains("secret-page") && !text.contains("BREW") && !text.contains("ada"), "{text}");
     assert_eq!((of("fosssim_jobs{state=\"done\"}"), of("fosssim_jobs{state=\"waiting\"}")), (1.0, 0.0));
     assert_eq!((of("fosssim_submissions_total"), of("fosssim_events_total{kind=\"graded\"}")), (1.0, 1.0));
@@ -86,7 +86,7 @@ async fn a_monitor_sees_requests_queue_process_and_disk(fresh: Fresh) {
         ["working", "idle", "aside"].map(|state| of(&format!("fosssim_workers_by_state{{state=\"{state}\"}}")));
     assert_eq!((by_state.iter().sum::<f64>(), by_state[2]), (1.0, 0.0), "{by_state:?}");
     assert_eq!(of(&format!("fosssim_build_info{{version=\"{}\"}}", env!("CARGO_PKG_VERSION"))), 1.0);
-    // Prometheus' own judgement, where it is installed.
+    // Check the text with Prometheus' own tool, if it is installed.
     if let Ok(mut promtool) =
         Command::new("promtool").args(["check", "metrics"]).stdin(Stdio::piped()).stdout(Stdio::piped()).spawn()
     {
@@ -104,7 +104,7 @@ fn a_judge_error_counts_as_buried_and_not_as_graded() {
         let admin = server.admin();
         server.course(&admin, "physics");
         let ada = server.member(&admin, "physics", "ada", "student");
-        // A grade that is none.
+        // A result that is not a grade.
         let id = ada.submit("physics", b"#!grade WA forty\n");
         assert_eq!(ada.wait_for_grade("physics", id)["state"], "buried");
         let seen = read(&server.visitor().get("/metrics").expect(200).text());

@@ -1,4 +1,4 @@
-//! The server as a process, spoken to over HTTP.
+//! Tests of the server as a process, over HTTP.
 
 mod again;
 mod answers;

@@ -1,4 +1,5 @@
-//! A course's suites stay in it: nobody of another course grades by them, and its students learn nothing of them.
+//! Tests that a course's suites belong to it: other courses cannot grade with them, and students get no information
+//! about them.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::{Client, JSON, Server, program},
@@ -6,7 +7,7 @@ use crate::support::{
 
 on_sqlite!(a_digest_opens_no_suite_of_another_course);
 
-/// An archive with a suite, as tar writes it.
+/// Returns an archive with a suite, as tar writes it.
 fn suite() -> Vec<u8> {
     let text = b"title = \"secret\"\n[[group]]\nname = \"Hidden\"\nscenes = []\nvisibility = \"hidden\"\n";
     let mut tar = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast()));
@@ -47,7 +48,8 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
         let told = ada.get(&door).expect(200).text();
         assert!(!told.contains(&digest[..12]), "{door}: {told}");
     }
-    // Its digest opens nothing elsewhere: neither in settings nor in a regrade; nor does that of any other upload.
+    // The digest gives no access elsewhere, neither in settings nor in a regrade, and neither does the digest of
+    // another upload.
     let upload = fosssim_server::store::Digest::from_bytes(&program("WA", 1)).to_string();
     for (client, course, digest) in [(&thief, "b", &digest), (&thief, "b", &upload), (&teacher, "a", &upload)] {
         let settings = format!(r#"{{"suite_archive": "{digest}", "hints": "full"}}"#);
@@ -56,7 +58,7 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
         let regrade = format!(r#"{{"reason": "again", "settings": {settings}}}"#);
         client.post_json(&format!("/api/v1/courses/{course}/assignments/m1/regrades"), &regrade).expect(409);
     }
-    // Where it was uploaded it may be chosen again.
+    // In the course to which it was uploaded, it can be chosen again.
     put(&teacher, "a", r#"{"suite_archive": null}"#).expect(200);
     put(&teacher, "a", &format!(r#"{{"suite_archive": "{digest}"}}"#)).expect(200);
 }

@@ -1,4 +1,4 @@
-//! Whose an account is: what staff may do to it, what its person may, and what a token may not.
+//! Tests who owns an account: the actions on it that staff, its person and a token may perform.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, JSON, Server},
@@ -13,7 +13,7 @@ on_both_engines!(
     a_session_lasts_from_the_last_visit
 );
 
-/// Makes somebody a member, and says what is to be handed on.
+/// Makes a person a member, and returns the answer with the link.
 fn add(by: &Client, course: &str, login: &str, role: &str) -> serde_json::Value {
     let wish = format!(r#"{{"name": "The {login}", "role": "{role}"}}"#);
     by.send("PUT", &format!("/api/v1/courses/{course}/members/{login}"), JSON, wish.as_bytes()).expect(200).json()
@@ -44,7 +44,7 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
     let teacher = server.member(&admin, "physics", "teacher", "staff");
     let colleague = server.member(&admin, "other", "colleague", "staff");
     let ada = server.visitor().welcome(&secret(&add(&teacher, "physics", "ada", "student")["link"]));
-    // Her account is one of physics, whose staff may sign in as her: the other course does not let it in by that.
+    // Her account belongs to physics, whose staff may sign in as her. Therefore the other course does not accept it.
     let wish = br#"{"name": "Ada", "role": "student"}"#;
     let refused = colleague.send("PUT", "/api/v1/courses/other/members/ada", JSON, wish).expect(403).json();
     assert!(
@@ -74,7 +74,7 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
         add(staff, course, "ada", "student");
     }
     ada.get("/api/v1/me").expect(200);
-    // Further courses add her at once.
+    // Further courses can add her immediately.
     server.course(&admin, "third");
     let third = server.member(&admin, "third", "third-teacher", "staff");
     assert!(add(&third, "third", "ada", "student")["link"].is_null());
@@ -123,7 +123,7 @@ async fn what_staff_could_have_planted_ends_when_rights_grow(fresh: Fresh) {
         let by_token = Client { url: server.url.clone(), headers: vec![("Cookie".to_owned(), cookie)] };
         let unused = secret(&new_link(&teacher, "physics", login).expect(200).json()["link"]);
         by_token.get("/api/v1/me").expect(200);
-        // Nothing proves who is who: all have to come by the administrator's link.
+        // The account's owner is not proven, so the administrator's link must be used.
         let added = add(&admin, "other", login, "student");
         student.get("/api/v1/me").expect(401);
         let student = link(added);
@@ -152,11 +152,11 @@ async fn tokens_make_no_further_ways_in(fresh: Fresh) {
         leaked.post_json("/api/v1/tokens", r#"{"name": "more"}"#).expect(403);
         leaked.post_form("/account/tokens", "name=more").expect(403);
     }
-    // Revoked, it is gone with what it began.
+    // When the token is revoked, the session that it began ends, too.
     session.send("DELETE", &format!("/api/v1/tokens/{}", made["id"]), &[], b"").expect(204);
     token.get("/api/v1/me").expect(401);
     by_token.get("/api/v1/me").expect(401);
-    // Nor does a browser that was left open make any.
+    // A browser that was left open cannot create tokens either.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     transaction.execute("UPDATE session SET created_at = created_at - 50000000", &[]).await.expect("older");
     transaction.commit().await.expect("a commit");
@@ -198,7 +198,7 @@ async fn ways_in_are_counted_by_network_and_bounded(fresh: Fresh) {
         ];
         server.visitor().send("POST", "/sign-in", &headers, format!("token={token}").as_bytes()).status
     };
-    // However often somebody signs in, they have few sessions: the first one ends.
+    // A person who signs in often has a limited number of sessions: the oldest one ends.
     for _ in 0..51 {
         assert_eq!(sign_in("192.0.2.1", &token), 303);
     }

@@ -1,4 +1,4 @@
-//! People come from a learning platform, and their scores go back there.
+//! Tests that people sign in from a learning platform, and that their scores are sent there.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     platform::{CLIENT, DEPLOYMENT, INSTRUCTOR, KEYS, LEARNER, Platform, Trouble, arrive, begin, checked, come},
@@ -29,17 +29,17 @@ pub(super) async fn start(fresh: &Fresh, more: &[&str]) -> (Server, Client, Plat
     (server, admin, platform)
 }
 
-/// The teacher connects the platform's course with a new one, makes an assignment, and chooses it for the link.
+/// The teacher connects the platform's course with a new one, creates an assignment, and chooses it for the link.
 pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
     let (teacher, place) = arrive(server, platform, ("teacher", INSTRUCTOR), |_| {});
     let page = teacher.get(&place).expect(200).text();
     assert!(page.contains("Physics &#60;1&#62;") && page.contains(r#"value="phys-1""#), "{page}");
     teacher.post_form(&format!("{place}/course"), "slug=physics&title=Physics").expect(303);
-    // The assignment can be made on the way.
+    // The assignment can be created during the choice.
     assert!(teacher.get(&place).expect(200).text().contains("A new assignment"));
     let wish = r#"{"title": "Milestone one", "visible": true, "settings": {"per_hour": 0}}"#;
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
-    // The form of before does as well as a new one.
+    // The form of the earlier page can still be sent.
     let chosen = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(303);
     assert_eq!(chosen.header("location"), Some("/c/physics/a/m1#done"));
     teacher
@@ -47,7 +47,7 @@ pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
 
 async fn a_course_of_a_platform(fresh: Fresh) {
     let (server, admin, platform) = start(&fresh, &["--tries", "1"]).await;
-    // Before a teacher has opened the link, nobody can sign in, and no account is made.
+    // Before a teacher has opened the link, nobody can sign in, and no account is created.
     let begun = begin(&server, &platform);
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", LEARNER));
     let early = come(&server, &begun, &token).expect(403).text();
@@ -66,7 +66,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let members = teacher.get("/api/v1/courses/physics/members").expect(200).text();
     assert!(members.contains(r#""login":"ada","name":"The ada","role":"student""#), "{members}");
 
-    // Points go to a column that the service makes, once; the better submission counts.
+    // Points are sent to a column that the service creates once. The better submission counts.
     let first = ada.submit("physics", &program("WA", 40));
     ada.wait_for_grade("physics", first);
     let score = platform.wait_for("ada", |score| score["scoreGiven"] == 40.0);
@@ -85,7 +85,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     assert!(score.get("scoreGiven").is_none() && score["activityProgress"] == "Submitted", "{score}");
     let failed = ada.submit("physics", b"#!grade JE 0\n");
     ada.wait_for_grade("physics", failed);
-    // A submission of the teacher is no score.
+    // A submission of the teacher does not create a score.
     let tried = teacher.submit("physics", &program("AC", 100));
     teacher.wait_for_grade("physics", tried);
 
@@ -154,7 +154,7 @@ async fn a_platform_with_troubles(fresh: Fresh) {
     {
         let inside = platform.inside();
         assert!(inside.troubles.is_empty(), "{:?}", inside.troubles);
-        // The one whose answer got lost came twice, with one time.
+        // The score whose answer was lost arrived twice, with the same time.
         let of_forty: Vec<&Value> =
             inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 40.0).map(|(_, score)| score).collect();
         assert!(of_forty.iter().all(|score| score["timestamp"] == of_forty[0]["timestamp"]), "{of_forty:?}");
@@ -232,7 +232,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     // A student who is first known from the roster has the same account at the first visit.
     let (bob, _) = arrive(&server, &platform, ("bob", LEARNER), |_| {});
     bob.get("/c/physics").expect(200);
-    // Staff made one of them staff here, and somebody of no platform a student: both stay what they are.
+    // Staff made one of them staff here, and made a person from no platform a student. Both keep their roles.
     let wish = br#"{"name": "x", "role": "staff"}"#;
     let login = bob.get("/api/v1/me").expect(200).json()["login"].as_str().expect("a login").to_owned();
     teacher.send("PUT", &format!("/api/v1/courses/physics/members/{login}"), JSON, wish).expect(200);
@@ -262,7 +262,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     platform.inside().members = whole;
     let left = ["Given ada student", "Given bob staff", "Given teacher staff", "Given tutor staff", "Local student"];
     assert_eq!(sorted(members()), left);
-    // A student who becomes more signs in again: anybody who was signed in for them does not come along.
+    // A student who becomes staff signs in again. Earlier sessions of the account have ended.
     let (now_staff, _) = arrive(&server, &platform, ("ada", INSTRUCTOR), |_| {});
     ada.get("/api/v1/me").expect(401);
     now_staff.get("/api/v1/courses/physics/members").expect(200);
@@ -273,7 +273,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     let begun = begin(&server, &platform);
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", INSTRUCTOR));
     assert!(come(&server, &begun, &token).expect(403).text().contains("sign in on its own pages"));
-    // A list without an end is given up, and changes nothing.
+    // A list without an end is rejected, and changes nothing.
     let done = teacher.post_form("/c/physics/members/roster", "confirm=yes").expect(200).text();
     assert!(done.contains(" joined, ") && done.contains(" left."), "{done}");
     platform.inside().published.clear();
@@ -287,7 +287,7 @@ fn platforms_change_their_keys() {
         let (server, _, platform) = start(&fresh, &[]).await;
         connect(&server, &platform);
         assert_eq!(platform.inside().key_reads, 1, "read once");
-        // A key that is not known is looked for, but not for everybody who makes one up.
+        // An unknown key is requested from the platform, but not for every invented key.
         for _ in 0..20 {
             let begun = begin(&server, &platform);
             let header = json!({"alg": "RS256", "kid": "made up"});
@@ -342,7 +342,7 @@ fn links_are_chosen_in_the_platform() {
         assert_eq!(claims["https://purl.imsglobal.org/spec/lti-dl/claim/data"], "sent back");
         let item = &claims["https://purl.imsglobal.org/spec/lti-dl/claim/content_items"][0];
         assert_eq!(item["url"], "https://grades.example.org/lti/launch");
-        // The link that the platform makes of it leads there by itself.
+        // The link that the platform creates opens the assignment without a further choice.
         let chosen = |claims: &mut Value| {
             claims[RESOURCE]["id"] = json!("chosen");
             claims[CUSTOM] = item["custom"].clone();
@@ -356,7 +356,7 @@ fn links_are_chosen_in_the_platform() {
         come(&server, &begun, &KEYS[0].sign(&claims)).expect(403);
         let (_, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
         admin.get(&place).expect(404);
-        // An assignment is made on the way, hidden, and a name that is taken changes nothing.
+        // A hidden assignment is created during the choice. A name that is taken changes nothing.
         let made = "assignment=&suite=&title=Milestone+two";
         teacher.post_form(&format!("{place}/assignment"), made).expect(200);
         let two = admin.get("/api/v1/courses/physics/assignments/milestone-two").expect(200).json();
@@ -406,7 +406,7 @@ fn frames_and_cookies_are_as_platforms_need_them() {
         assert!(policy.contains(&format!("frame-ancestors {}", platform.url)), "{policy}");
         let page = framed.text();
         assert!(page.contains("target=\"_blank\"") && page.contains("login_hint=a%22%3E&#38;client_id="), "{page}");
-        // By POST, too, as some platforms begin.
+        // Some platforms begin with POST.
         let headers = [("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "cross-site")];
         server.visitor().send("POST", "/lti/login", &headers, query.as_bytes()).expect(303);
         let configuration = server.visitor().get("/lti/configuration.json").expect(200).json();
@@ -442,13 +442,13 @@ fn platforms_are_reached_by_https_only() {
             wrong[field] = json!(value);
             put("other", &wrong).expect(400);
         }
-        // One registration for each issuer and client, and accounts of an issuer stay that issuer's.
+        // Each issuer and client can be registered once, and a registration's issuer cannot change.
         put("other", &wish).expect(409);
         wish["issuer"] = json!("https://evil.example");
         put("moodle", &wish).expect(409);
         let page = admin.get("/admin/platforms").expect(200).text();
         assert!(page.contains("/lti/login</code>") && page.contains("https://moodle.example.org"), "{page}");
-        // Without HTTPS the browser's cookie would not come back from there.
+        // Without HTTPS, the browser would not send the cookie with the platform's answer.
         let answer = server.visitor().get("/lti/login?iss=https%3A%2F%2Fmoodle.example.org&login_hint=x").expect(409);
         assert!(answer.text().contains("--public-url"), "{}", answer.text());
         let form = "name=canvas&issuer=https://canvas.instructure.com&client_id=1&login_url=https://sso.canvaslms.com/a\

@@ -1,4 +1,4 @@
-//! People sign in at an OpenID Connect provider.
+//! Tests that people sign in at an OpenID Connect provider.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     platform::{KEYS, now, unsigned},
@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 on_both_engines!(people_sign_in, an_account_is_connected_by_its_person, only_people_of_the_domain_come_in);
 
-/// A server whose people sign in at a new provider, with further options, and its administrator.
+/// Starts a provider, and a server that uses it, with further options. Also returns the administrator.
 async fn start(fresh: &Fresh, more: &[&str]) -> (Server, Client, Provider) {
     let provider = Provider::start().await;
     let folder = tempfile::tempdir().expect("a folder");
@@ -27,7 +27,7 @@ async fn start(fresh: &Fresh, more: &[&str]) -> (Server, Client, Provider) {
     (server, admin, provider)
 }
 
-/// Waits: the server reads the provider's configuration again after a second.
+/// Waits until a condition holds, because the server reads the provider's configuration again only after a second.
 fn wait_until(holds: impl Fn() -> bool) {
     let start = std::time::Instant::now();
     while !holds() {
@@ -40,7 +40,7 @@ fn login(person: &Client) -> String {
     person.get("/api/v1/me").expect(200).json()["login"].as_str().expect("a login").to_owned()
 }
 
-/// Makes somebody a member, and signs them in by the link.
+/// Creates a member, and signs the person in with the link.
 fn member(server: &Server, by: &Client, login: &str, role: &str) -> Client {
     let wish = format!(r#"{{"name": "X", "role": "{role}"}}"#);
     let made = by.send("PUT", &format!("/api/v1/courses/physics/members/{login}"), JSON, wish.as_bytes());
@@ -66,7 +66,8 @@ async fn people_sign_in(fresh: Fresh) {
     assert_eq!(login(&again), "ada");
     let (other, _) = sign_in(&server, &provider, "x-1", |claims| claims["email"] = json!("ada@uni.example"));
     assert_eq!(login(&other), "ada-2");
-    // Without a domain nobody gets an account that staff made, and a platform's subject is none of the provider's.
+    // Without a domain, nobody gets an account that staff created, and a platform's subject is not a subject of the
+    // provider.
     member(&server, &admin, "eve", "student");
     assert_eq!(login(&sign_in(&server, &provider, "eve", |_| {}).0), "eve-2");
     let mut transaction = fresh.database.begin().await.expect("a transaction");
@@ -101,7 +102,8 @@ async fn an_account_is_connected_by_its_person(fresh: Fresh) {
     let planted = welcome(&server, &new_link().expect(200));
     let token = planted.post_json("/api/v1/tokens", r#"{"name": "planted"}"#).expect(201).json();
     let token = server.with_token(token["token"].as_str().expect("a token"));
-    // Another site begins no connection: it could have signed this browser in at the provider. Nor does a token.
+    // Another site cannot begin a connection, because it could have signed this browser in at the provider. A token
+    // cannot, either.
     let session = ("Cookie", ada.headers[0].1.as_str());
     server.visitor().send("GET", "/account/provider", &[session, ("Sec-Fetch-Site", "cross-site")], b"").expect(403);
     token.send("GET", "/account/provider", &[("Sec-Fetch-Site", "same-origin")], b"").expect(403);
@@ -112,21 +114,21 @@ async fn an_account_is_connected_by_its_person(fresh: Fresh) {
         let cookies = format!("{}; {}", begun.cookie, person.headers[0].1);
         (begun, code, cookies)
     };
-    // Only who began it ends it.
+    // Only the browser that began the connection can complete it.
     let (begun, code, _) = connect(&ada, "ada");
     come(&server, (&begun.asked["state"], &code), &begun.cookie).expect(403);
     let (begun, code, cookies) = connect(&ada, "ada");
     let (ada, place) = entered(&server, &come(&server, (&begun.asked["state"], &code), &cookies).expect(303));
     assert_eq!((login(&ada).as_str(), place.as_str()), ("ada", "/account"));
     assert!(ada.get("/account").expect(200).text().contains("You sign in with Uni"));
-    // The account is hers: what staff began by links has ended, and they make no more.
+    // The account is now her own: sessions from staff links have ended, and staff can create no more links.
     planted.get("/api/v1/me").expect(401);
     token.get("/api/v1/me").expect(401);
     new_link().expect(403);
     assert_eq!(login(&sign_in(&server, &provider, "ada", |_| {}).0), "ada");
     let (begun, code, cookies) = connect(&ada, "other");
     come(&server, (&begun.asked["state"], &code), &cookies).expect(409);
-    // Staff could have connected it by a link: where it may do more from now on, it is connected again.
+    // Staff could have connected it in a session from a link. If it gets more rights, it must be connected again.
     let wish = br#"{"name": "Ada", "role": "staff"}"#;
     let link = admin.send("PUT", "/api/v1/courses/physics/members/ada", JSON, wish).expect(200);
     let (new, _) = sign_in(&server, &provider, "ada", |_| {});
@@ -190,7 +192,8 @@ async fn attack(fresh: Fresh) {
         let code = provider.code(&begun, &sign(&claims));
         refused(come(&server, (&begun.asked["state"], &code), &begun.cookie), said, name);
     }
-    // States: made up, changed, of another browser, of none, and used before. Codes: of another sign-in, and used.
+    // States that are invented, changed, of another browser, without a browser, or used. Codes of another sign-in, and
+    // used codes.
     let (begun, other) = (begin(&server.visitor(), "/sign-in/provider"), begin(&server.visitor(), "/sign-in/provider"));
     let token = KEYS[0].sign(&provider.claims(&begun, "ada"));
     let (state, code) = (&begun.asked["state"], provider.code(&begun, &token));
@@ -206,7 +209,7 @@ async fn attack(fresh: Fresh) {
     refused(come(&server, (state, &code), &begun.cookie), "unknown, used or too old", "used");
     let answer = server.visitor().get("/sign-in/provider/answer?error=access_denied&state=x");
     refused(answer, "access_denied", "the person said no");
-    // From it the way leads to this server only.
+    // After the sign-in, only pages of this server are opened.
     for to in ["%2F%2Fevil.example", "https%3A%2F%2Fevil.example", "%2F%5Cevil.example"] {
         let begun = begin(&server.visitor(), &format!("/sign-in/provider?to={to}"));
         let code = provider.code(&begun, &KEYS[0].sign(&provider.claims(&begun, "ada")));
@@ -235,7 +238,8 @@ async fn only_people_of_the_domain_come_in(fresh: Fresh) {
         refused(&|claims| drop(claims.as_object_mut().expect("claims").remove("email_verified")), "ada")
             .contains("confirmed")
     );
-    // An account that staff made for this login is hers, once; what staff could have begun in it has ended.
+    // She gets the account that staff created for this login, once. Sessions that staff could have begun in it have
+    // ended.
     let named = |claims: &mut Value| claims["email"] = json!("Ada@Uni.Example");
     let (ada, _) = sign_in(&server, &provider, "id-7", named);
     assert_eq!(login(&ada), "ada");
@@ -243,7 +247,7 @@ async fn only_people_of_the_domain_come_in(fresh: Fresh) {
     made.get("/api/v1/me").expect(401);
     teacher.post_json("/api/v1/courses/physics/members/ada/link", "{}").expect(403);
     assert_eq!(login(&sign_in(&server, &provider, "id-8", named).0), "ada-2", "the address has another owner now");
-    // Staff and administrators connect their accounts at a browser that is signed in.
+    // Staff and administrators connect their accounts in a browser that is signed in.
     assert!(refused(&|_| {}, "teacher").contains("sign in by your link"));
     assert_eq!(login(&sign_in(&server, &provider, "admin", |_| {}).0), "admin-2");
 }

@@ -6,7 +6,7 @@ use crate::support::{
 
 on_both_engines!(what_is_removed_is_gone, a_person_is_removed_by_name_too, a_job_of_what_is_removed_ends_without_harm);
 
-/// How many rows speak of submissions.
+/// Returns the numbers of rows about submissions.
 async fn rows(fresh: &Fresh) -> Vec<i64> {
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let mut counts = Vec::new();
@@ -87,7 +87,7 @@ async fn a_person_is_removed_by_name_too(fresh: Fresh) {
         assert!(!text.contains("lovelace"), "{place}: {text}");
     }
     assert!(admin.get("/api/v1/audit").expect(200).text().contains("a person with all their data"));
-    // The name is free again, for somebody who is new.
+    // A new person can get the login.
     let other = server.member(&admin, "physics", "ada.lovelace", "student");
     assert_eq!(
         other.get("/api/v1/courses/physics/assignments/m1/submissions").expect(200).json(),

@@ -1,4 +1,4 @@
-//! Every route against every role: who gets in, who is refused, and how.
+//! Tests every route with every role: which requests are accepted, and which status rejections have.
 use crate::support::{
     engines::{Fresh, run},
     server::{Client, JSON, Server, program},
@@ -6,12 +6,12 @@ use crate::support::{
 use fosssim_server::web;
 use std::collections::BTreeSet;
 
-/// Whom a route serves.
+/// The senders that a route serves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum For {
-    /// Anybody.
+    /// All senders.
     All,
-    /// Anybody who is signed in.
+    /// All people who are signed in.
     People,
     /// Members of the course.
     Members,
@@ -26,7 +26,7 @@ pub(super) enum For {
 }
 use For::{Admins, All, Members, Owner, People, Staff, Workers};
 
-/// Every route, by its template; what stands in braces is filled in by [`fill`].
+/// Every route, by its template. [`fill`] replaces the parts in braces.
 pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/health", All),
     ("get", "/ready", All),
@@ -174,7 +174,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/static/report.js", All),
 ];
 
-/// The roles of askers.
+/// The roles of senders.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Role {
     Visitor,
@@ -187,8 +187,8 @@ enum Role {
     Worker,
 }
 
-/// The path to the submission of `owner`; what else it names is not there, so that a request that gets in changes
-/// nothing.
+/// Returns the path to the submission of `owner`. Other objects in the path do not exist, so that an accepted request
+/// changes nothing.
 fn fill(method: &str, path: &str, submission: i64) -> String {
     let is_there = path.contains("submissions/{id}") || path.contains("/s/{id}");
     let id = if is_there && method != "delete" { submission } else { 999_999 };
@@ -204,7 +204,7 @@ fn fill(method: &str, path: &str, submission: i64) -> String {
         .replace("{digest}", &"0".repeat(64))
 }
 
-/// Whether somebody gets in, and the status of who does not.
+/// Returns the expected status of a rejection; `None` if the request is accepted.
 fn expected(role: Role, whom: For) -> Option<u16> {
     let signed_in = !matches!(role, Role::Visitor | Role::Worker);
     let of_course = matches!(role, Role::Owner | Role::Classmate | Role::Staff | Role::Admin);
@@ -215,7 +215,7 @@ fn expected(role: Role, whom: For) -> Option<u16> {
         _ if !signed_in => Some(401),
         For::People => None,
         For::Admins => (role != Role::Admin).then_some(403),
-        // A course of others is none.
+        // Another person's course looks like a missing one.
         _ if !of_course => Some(404),
         For::Members => None,
         For::Staff => (!staff).then_some(403),
@@ -223,8 +223,7 @@ fn expected(role: Role, whom: For) -> Option<u16> {
     }
 }
 
-/// Asks for a course's objects by the address of another one, as its staff and in words that are understood; returns
-/// the answers that tell of them.
+/// Requests a course's objects by the address of another course, as its staff. Returns the answers that reveal them.
 fn found_elsewhere(clients: &[(Role, Client)], submission: i64) -> Vec<String> {
     let mut wrong = Vec::new();
     let by_name = |name: Role| clients.iter().find(|(role, _)| *role == name).map(|(_, client)| client);
@@ -294,17 +293,17 @@ fn every_route_serves_whom_it_should_and_nobody_else() {
                 let answer = client.send(&method.to_uppercase(), &fill(method, path, submission), headers, b"%");
                 let refused = expected(*role, *whom);
                 let right = match refused {
-                    // A page shows the way in instead.
+                    // A page redirects to the sign-in page instead.
                     Some(401) if page && *method == "get" => {
                         answer.header("location").is_some_and(|place| place.starts_with("/sign-in"))
                     }
                     Some(status) => answer.status == status,
-                    // A thing that is not there, and one that is not understood, is told to those who got in.
+                    // Accepted senders get an error about a missing object or an invalid request.
                     None if *method == "get" => matches!(answer.status, 200 | 400 | 404),
                     None => !matches!(answer.status, 403 | 500..),
                 };
-                // Being told that the wrong body is wrong, or that nothing is there, is not being let in.
-                // The head of a page names the person who is signed in.
+                // An error about the body, or about a missing object, must not reveal data. The head of a page names
+                // the person who is signed in.
                 let own = if matches!(role, Role::Owner) { "/account\">owner<" } else { "nobody" };
                 let leaks = refused.is_some() && answer.text().replace(own, "").contains("owner");
                 if !right || leaks {

@@ -1,4 +1,4 @@
-//! Settings, as people fill them in and programs write them.
+//! Tests settings, from forms and from programs.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::{JSON, Server},
@@ -17,7 +17,7 @@ async fn settings_are_a_form(fresh: Fresh) {
                 &form_sources=on\
                 &megabytes=0.5&attempts=3&per_hour=0&late_days=2&late_percent=25";
     let path = "/c/physics/a/m1/settings";
-    // Without a script the field is in UTC, and says so; with one in the reader's zone.
+    // Without a script, the field is in UTC and shows this. With a script, it is in the reader's time zone.
     send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
     let utc = settings();
     send(path, &format!("{form}&due=2026-12-01T23:59&due_zone=60")).expect(303);
@@ -41,7 +41,7 @@ async fn settings_are_a_form(fresh: Fresh) {
     }
     send(path, &form.replace("form_sources=on", "x=y")).expect(400);
     assert_eq!(settings(), utc);
-    // Settings that the form does not show stay: seconds of a date, and a suite that was uploaded.
+    // Settings that the form does not show are kept: the seconds of a date, and an uploaded suite.
     let wish = r#"{"title": "M", "visible": true, "settings": {"due_at": "2026-12-01T23:59:30+01:00"}}"#;
     admin.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
     send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
@@ -64,7 +64,7 @@ async fn a_date_is_a_date(fresh: Fresh) {
         assert_eq!(set(due).expect(200).json()["settings"]["due_at"], 1_796_165_940_000_i64, "{due}");
     }
     set("null").expect(200);
-    // Seconds would shut the assignment in 1970.
+    // A number of seconds would close the assignment in 1970.
     let problem = set("1796165940").expect(400).json();
     assert!(problem["detail"].as_str().expect("words").contains("1796165940 looks like seconds"), "{problem}");
     for due in ["\"2026-12-01T22:59\"", "\"soon\"", "1.5", "-1"] {
@@ -95,7 +95,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     );
     let stale = format!(r#"{{"title": "M", "settings": {{"attempts": 9}}, "revision": {seen}}}"#);
     admin.send("PUT", path, JSON, stale.as_bytes()).expect(409);
-    // A field is a field: what others set stays, also without a revision.
+    // A change of one field keeps the other fields, even without a revision.
     let one = admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"hints": "what"}}"#).expect(200).json();
     assert_eq!((&one["settings"]["attempts"], &one["settings"]["hints"]), (&3.into(), &"what".into()));
     admin.send("PUT", path, JSON, br#"{"title": "M", "settings": {"attempts": null}}"#).expect(400);

@@ -1,4 +1,4 @@
-//! Signs of life: systemd's, and those of probes.
+//! Tests heartbeats for systemd and for probes.
 use crate::support::{
     engines::{Fresh, run},
     server::Server,
@@ -10,7 +10,8 @@ use std::{
     time::Duration,
 };
 
-/// The next word to systemd. Signals to this process, of other tests' children for example, may interrupt the wait.
+/// Returns the next message to systemd. Signals to this process, for example from children of other tests, may
+/// interrupt the wait.
 fn told(socket: &UnixDatagram) -> String {
     let mut text = [0; 4096];
     let length = loop {
@@ -81,7 +82,7 @@ fn probes_tell_who_is_well() {
         }
         worker.kill().expect("an end");
         worker.wait().expect("an end");
-        // Its last sign gets old.
+        // The last heartbeat becomes old.
         let long_ago = std::time::SystemTime::now() - Duration::from_secs(600);
         let sign = std::fs::File::options().write(true).open(format!("{data}/alive")).expect("its sign");
         sign.set_modified(long_ago).expect("a time");

@@ -1,4 +1,4 @@
-//! Disks that are full, and what is not to be kept.
+//! Tests full disks and read-only databases.
 use crate::support::{
     disk::{SmallDisk, stored},
     engines::{Fresh, on_sqlite, run},
@@ -11,7 +11,7 @@ on_sqlite!(uploads_need_room, nothing_is_stored_of_a_refused_upload);
 const SUBMISSIONS: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
 async fn uploads_need_room(fresh: Fresh) {
-    // More than any disk has.
+    // The limit is larger than any disk.
     let mut server = Server::start(&fresh, &["--workers", "0", "--low-water", "1000000000"]);
     let admin = server.admin();
     server.course(&admin, "physics");
@@ -40,8 +40,7 @@ async fn nothing_is_stored_of_a_refused_upload(fresh: Fresh) {
     ada.send("POST", SUBMISSIONS, key, &program("AC", 1)).expect(200);
 }
 
-/// On a disk that was full and has room again the server writes again, without being started again. Its log lies there,
-/// too.
+/// When a full disk has free space again, the server writes again without a restart. Its log is on the same disk.
 #[test]
 fn a_full_disk_heals() {
     run(async {

@@ -1,4 +1,4 @@
-//! Tests the work of staff: the import of a class, more time, other points, an answer.
+//! Tests the work of staff: importing a class, extensions, points by hand, and answers to requests.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, JSON, Server, program},
@@ -45,14 +45,14 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let link = page.split("<code>").nth(1).and_then(|rest| rest.split('<').next()).expect("a link");
     let ada = server.visitor().welcome(link.rsplit('/').next().expect("a secret"));
     assert_eq!(ada.get("/api/v1/me").expect(200).json()["login"], "ada");
-    // A file does what the form does: it is looked at first, and columns that are not kept are named.
+    // A file works like the form: it is previewed first, and ignored columns are listed.
     let file = "--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"class.csv\"\r\n\r\n\
                 Login,Name,Matriculation\ndora,Dora,4711\n\r\n--b--\r\n";
     let form = [("Content-Type", "multipart/form-data; boundary=b")];
     let page = teacher.send("POST", "/c/physics/members/table", &form, file.as_bytes()).expect(200).text();
     assert!(page.contains("not used: Matriculation.") && page.contains("dora,Dora,4711"), "{page}");
     assert_eq!(members(), 4);
-    // A name that a spreadsheet would take for a formula is text.
+    // A name that a spreadsheet would read as a formula is marked as text.
     let page =
         teacher.post_form("/c/physics/members/import", "table=%3D1%2B1,mallory%0A&import=yes").expect(200).text();
     assert!(
@@ -60,7 +60,7 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
         "{page}"
     );
     teacher.send("DELETE", &format!("{path}/mallory"), &[], b"").expect(204);
-    // Once more it makes nothing new.
+    // A repeated import creates nothing.
     let again = teacher.send("POST", path, &csv, table.as_bytes()).expect(200).json();
     assert!(again[0]["link"].is_null() && again[0]["error"].is_null(), "{again}");
     assert_eq!(members(), 4);
@@ -78,7 +78,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
         ada.wait_for_grade("physics", *id);
     }
     let place = |id: i64| format!("/api/v1/courses/physics/submissions/{id}");
-    // The student asks, staff sees it and answers with other points.
+    // The student requests a review, and staff answers with other points.
     ada.post_form(&format!("/c/physics/s/{}/request", ids[1]), "text=The+scene+is+%3Cb%3Eodd%3C/b%3E").expect(303);
     eve.post_json(&format!("{}/request", place(ids[1])), r#"{"text": "me, too"}"#).expect(404);
     ada.post_json(&format!("{}/request", place(ids[1])), r#"{"text": "Is anybody there?"}"#).expect(204);
@@ -106,11 +106,11 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
     check_parts(&server, &admin, &teacher);
-    // The scenes that students have wrong.
+    // The wrong scenes of students.
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     let hard = ">Group/hard</th><td class=\"num\">2</td><td class=\"words\"><a href=\"/c/physics/a/m1/students/ada";
     assert!(class.contains(hard), "{class}");
-    // All attempts on one page, and what each has changed.
+    // All attempts are on one page, with the changes of each.
     let mended = eve.submit("physics", &program("AC", 90));
     eve.wait_for_grade("physics", mended);
     let words = "Since submission 1, these became right: Group/hard.";
@@ -122,7 +122,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 of 100"), "{page}");
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "30");
-    // Both stand in the history, and a comment alone changes no grade.
+    // Both are in the history, and a comment alone changes no grade.
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "by the way"}"#).expect(200);
     let history = ada.get(&format!("{}/history", place(ids[1]))).expect(200).json();
     let changes: Vec<_> = history.as_array().expect("a list")[1..].iter().collect();
@@ -130,7 +130,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert_eq!(changes.len(), 2, "{history}");
     assert_eq!(line(changes[0]), ["teacher", "points by hand: You are right", "30", "68.5"]);
     assert_eq!(line(changes[1]), ["teacher", "the grader's points again: after all", "68.5", "30"]);
-    // More time for one.
+    // An extension for one student.
     let wish = r#"{"title": "M", "visible": true, "settings": {"per_hour": 0, "due_at": "2026-01-01T00:00Z"}}"#;
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
     let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
@@ -147,7 +147,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
 }
 
-/// The list of the class shows a part of it, and those who make a mistake.
+/// Checks that the class page filters students by category and by mistake.
 fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
     server.member(admin, "physics", "carl", "student");
     for (part, shown) in [("missing", "carl"), ("wrong", "eve"), ("late", ""), ("accepted", "")] {
@@ -160,7 +160,8 @@ fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
     assert!(teacher.get("/c/physics/a/m1/class?mistake=none").expect(200).text().contains("matches the filter"));
 }
 
-/// A request has the submission's number among those of its owner, and nothing is said of scenes that did not run.
+/// Checks that a request has the submission's number among those of its owner, and that scenes that did not run are not
+/// mentioned.
 fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     eve.post_form(&format!("/c/physics/s/{mended}/request"), "text=Is+it").expect(303);
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
@@ -174,7 +175,7 @@ fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     assert!(page.contains("fix what the report names first") && !page.contains("o longer right"), "{page}");
 }
 
-/// Two submissions are compared, by number or by login.
+/// Checks that two submissions are compared, by number or by login.
 fn check_beside(teacher: &Client, [one, other, mended]: [i64; 3]) {
     for with in [other.to_string(), "ada".to_owned()] {
         let page = teacher.get(&format!("/c/physics/s/{one}/beside?with={with}")).expect(200).text();
@@ -223,26 +224,26 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
     teacher.send("PUT", &mark, JSON, br#"{"points": 90, "comment": "ill"}"#).expect(200);
     assert_eq!(seen()["grade"]["points"], "90");
-    // Less time for one than for all is none.
+    // An extension that is earlier than the due date has no effect.
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2001-01-01T00:00Z"}"#).expect(204);
     teacher.send("PUT", &mark, JSON, b"{}").expect(200);
     assert_eq!(seen()["grade"]["points"], "76");
-    // The days are over.
+    // The late days are over.
     set(1).expect(200);
     let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";
     ada.send("POST", upload, &[], &program("AC", 100)).expect(409);
-    // Where nothing is taken late any more, the work that was taken keeps its price; a new title changes nothing else.
+    // When late work is no longer accepted, earlier late work keeps its deduction. A new title changes nothing else.
     set(0).expect(200);
     let wish = br#"{"title": "Another title"}"#;
     let kept = teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish).expect(200).json();
     assert_eq!((&kept["visible"], &kept["settings"]["late_percent"]), (&true.into(), &10.into()));
     assert_eq!(seen()["grade"]["points"], "76");
-    // Staff that tries the assignment is no student of the class.
+    // Staff who try the assignment are not in the class.
     let trial = teacher.submit("physics", &program("AC", 20));
     teacher.wait_for_grade("physics", trial);
     let class = teacher.get("/api/v1/courses/physics/assignments/m1/class").expect(200).json();
     assert_eq!(class.as_array().map(Vec::len), Some(1), "{class}");
-    // A browser gets a page where nothing is.
+    // A browser gets a page for a missing address.
     let missing = ada.send("GET", "/nope", &[("accept", "text/html")], b"").expect(404).text();
     assert!(missing.contains("<html"), "{missing}");
 }

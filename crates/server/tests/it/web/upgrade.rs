@@ -1,4 +1,4 @@
-//! A newer server on an older database.
+//! Tests a newer server with an older database.
 use crate::support::{
     engines::{Fresh, run},
     server::Server,
@@ -86,13 +86,13 @@ const BACK_TO_THE_FIRST: &[&str] = &[
 fn the_database_is_copied_before_its_tables_change() {
     run(async {
         let fresh = Fresh::sqlite().await.expect("SQLite").with_tables().await;
-        // As the first version left it.
+        // The database is as the first version left it.
         let mut transaction = fresh.database.begin().await.expect("a transaction");
         for statement in BACK_TO_THE_FIRST {
             transaction.execute(statement, values![]).await.expect("a statement");
         }
         transaction.commit().await.expect("commit");
-        // A server that was killed in the middle of a copy left a part of it.
+        // A server that was killed during a copy left a part of it behind.
         let temp = tempfile::tempdir().expect("a folder");
         let backups = temp.path().join("data/backups");
         std::fs::create_dir_all(&backups).expect("a folder");
@@ -109,19 +109,19 @@ fn the_database_is_copied_before_its_tables_change() {
         };
         let made = copies();
         let [copy] = made.as_slice() else { panic!("{made:?}") };
-        // The copy is a whole database of the old version.
+        // The copy is a complete database of the old version.
         let old = Database::open(&Address::Sqlite(copy.clone())).await.expect("the copy");
         assert_eq!(db::read_version(&old).await.expect("a version"), 1);
         let mut transaction = old.read().await.expect("a transaction");
         let row = transaction.one("SELECT name FROM account WHERE login = 'ada'", values![]).await.expect("a row");
         assert_eq!(row.text("name").expect("a name"), "Ada");
         drop(transaction);
-        // Started again it changes nothing, and copies nothing.
+        // After a restart, it changes and copies nothing.
         assert!(server.stop().success());
         server.resume();
         admin.get("/api/v1/me").expect(200);
         assert_eq!(copies(), made);
-        // A restored backup is brought up to date by itself.
+        // A restored backup is updated automatically.
         old.close().await;
         let folder = tempfile::tempdir().expect("a folder");
         let place = folder.path().join("restored.db");

@@ -1,4 +1,4 @@
-//! Workers on other machines: processes that know nothing but an address and a token.
+//! Tests workers on other machines: processes that know only an address and a token.
 use crate::support::{
     engines::{Fresh, on_sqlite, run},
     server::{Client, JSON, Server, program},
@@ -17,7 +17,7 @@ on_sqlite!(
     units_of_systemd_need_no_further_step,
 );
 
-/// A worker as a process with a data folder of its own, killed at the end.
+/// A worker as a process with its own data folder. It is killed at the end.
 struct Machine {
     child: Child,
     _folder: tempfile::TempDir,
@@ -50,7 +50,7 @@ impl Machine {
         self.child.wait().expect("wait");
     }
 
-    /// Asks it to end; it gives its jobs back first.
+    /// Stops the worker, which gives its jobs back first.
     fn stop(&mut self) {
         // SAFETY: the process is this test's own child, and not reaped.
         unsafe { libc::kill(self.child.id().cast_signed(), libc::SIGTERM) };
@@ -70,7 +70,7 @@ fn worker_token(admin: &Client) -> String {
     token["token"].as_str().expect("a token").to_owned()
 }
 
-/// A tar archive as students make them: a folder with everything in it.
+/// Returns a tar archive as students create it: one folder that contains all files.
 fn archive(files: &[(&str, &[u8])]) -> Vec<u8> {
     let mut archive = tar::Builder::new(Vec::new());
     for (name, bytes) in files {
@@ -92,7 +92,7 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
     assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "70");
     let report = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/files/report.txt")).expect(200);
     assert!(report.text().contains("FOSSSim by t2m2"), "{}", report.text());
-    // Sources, and a suite that was uploaded, come as archives and are unpacked there.
+    // Sources and an uploaded suite arrive as archives, and the worker unpacks them.
     let suite = archive(&[("suite.toml", b"title = 'x'")]);
     admin.send("PUT", "/api/v1/courses/physics/assignments/m1/suite", &[], &suite).expect(200);
     let sources = archive(&[("mine/FOSSSim", b"#!grade AC 90\n"), ("mine/main.cpp", b"int main() {}")]);
@@ -103,7 +103,7 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
     assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "90");
     let report = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/files/report.txt")).expect(200);
     assert!(report.text().contains("FOSSSim by suite.toml"), "{}", report.text());
-    // Traces, too, and are told from sources by their names.
+    // Traces do, too. They are distinguished from sources by their names.
     let traces = archive(&[("Group/one.bin", b"#!grade WA 30\n"), ("Group/two.bin", b"x")]);
     let path = "/api/v1/courses/physics/assignments/m1/submissions?name=traces.tar";
     let id = ada.send("POST", path, &[], &traces).expect(201).json();
@@ -114,7 +114,7 @@ async fn a_worker_of_another_machine_grades(fresh: Fresh) {
     assert!(refused.text().contains("an archive of traces may contain only files NAME.bin"), "{}", refused.text());
     let queue = admin.get("/api/v1/queue").expect(200).json();
     assert!(queue["workers"][0]["name"].as_str().expect("a name").starts_with("lab/same."), "{queue}");
-    // A worker that is asked to stop gives back what it has, and nobody counts a failure.
+    // A worker that must stop gives its jobs back, and no failure is counted.
     let id = ada.submit("physics", b"#!grade HANG 0\n");
     while admin.get("/api/v1/queue").expect(200).json()["running"] != 1 {
         std::thread::sleep(std::time::Duration::from_millis(20));
@@ -135,13 +135,13 @@ async fn kills_of_workers_and_server_lose_nothing(fresh: Fresh) {
     let token = worker_token(&admin);
     let mut machines: Vec<Machine> = (0..2).map(|_| Machine::start(&server, &token)).collect();
     let path = "/api/v1/courses/physics/assignments/m1/submissions";
-    // Larger by `FOSSSIM_STORM=SUBMISSIONS,KILLS`, as the other storms.
+    // `FOSSSIM_STORM=SUBMISSIONS,KILLS` sets a larger size, as for the other storms.
     let size = std::env::var("FOSSSIM_STORM").ok().and_then(|words| words.split(',').next()?.parse().ok());
     let size: u32 = size.unwrap_or(24);
     let (start, mut worker_kills, mut server_kills) = (std::time::Instant::now(), 0, 0);
     let mut ids = Vec::new();
     for number in 0..size {
-        // A client that hears nothing asks again with the same key, until it is told.
+        // A client without an answer repeats the request with the same key until it gets one.
         let key = format!("upload {number}");
         let id = loop {
             let sent = ada.try_send("POST", path, &[("Idempotency-Key", &key)], &program("WA", number));
@@ -208,7 +208,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     file(&held, "").expect(400);
     file("../../fosssim.db", &shown).expect(404);
     file("..%2F..%2Ffosssim.db", &shown).expect(400);
-    // A result names what was stored for this job: somebody else's file would be read through it.
+    // A result may name only files that were stored for this job. Otherwise it could reveal other files.
     let finish = |code: &str, points: &str, name: &str, digest: &str| {
         let outcome = format!(
             r#"{{"lease": {lease}, "outcome": {{"verdict": "w", "code": "{code}", "points": "{points}",
@@ -217,7 +217,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
         );
         worker.send("POST", "/api/v1/worker/finish", JSON, outcome.as_bytes())
     };
-    // A newer worker may say more than this server knows.
+    // A newer worker may send fields that this server does not know.
     let alive = br#"{"slots": 1, "version": "99.0", "color": "blue"}"#;
     assert!(worker.send("POST", "/api/v1/worker/tick", JSON, alive).expect(200).json()["version"].is_string());
     let workers = admin.get("/api/v1/queue").expect(200).json()["workers"].take();
@@ -239,10 +239,10 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     assert_eq!(finish("AC", "100", "report.txt", &report).expect(200).json()["held"], true, "the same lease again");
     let submission = ada.wait_for_grade("physics", mine);
     assert_eq!([&submission["grade"]["code"], &submission["grade"]["points"]], ["WA", "1"], "the first answer counts");
-    // The content of a report is ours to say, not the worker's.
+    // The server, not the worker, chooses a report's media type.
     let told = ada.get(&format!("/api/v1/courses/physics/submissions/{mine}/files/report.txt")).expect(200);
     assert_eq!(told.header("content-type"), Some("text/plain; charset=utf-8"));
-    // The lease is over, and so is the token once it is revoked.
+    // The lease has ended. After it is revoked, the token is invalid, too.
     file(&held, &shown).expect(404);
     let tokens = admin.get("/api/v1/worker-tokens").expect(200).json();
     let id = &tokens[0]["id"];
@@ -266,7 +266,7 @@ async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
     }
     admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
     assert_eq!(machine.child.wait().expect("an end").code(), Some(2));
-    // The same when it is started.
+    // The same happens when the worker starts.
     assert_eq!(Machine::start(&server, token).child.wait().expect("an end").code(), Some(2));
     let log = fs::read_to_string(server.folder.with_file_name("worker.log")).expect("a log");
     let said = log
@@ -275,7 +275,7 @@ async fn a_worker_whose_token_is_revoked_says_so_and_ends(fresh: Fresh) {
     assert_eq!(said.count(), 2, "{log}");
 }
 
-/// A report that is stored while the job is taken away would keep the row of the job from being removed.
+/// A report that is stored while the job is removed would prevent the removal of the job's row.
 #[test]
 fn a_report_waits_for_whoever_takes_the_job_away() {
     run(async {
@@ -307,7 +307,7 @@ fn a_report_waits_for_whoever_takes_the_job_away() {
     });
 }
 
-/// The command of the server's unit that makes the token of its own machine's worker, at other places.
+/// Runs the command of the server's unit that creates a token for the worker on the same machine, with other paths.
 async fn units_of_systemd_need_no_further_step(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "0"]);
     let unit = include_str!("../../../../../examples/deploy/systemd/fosssim-server.service");
@@ -335,7 +335,7 @@ async fn units_of_systemd_need_no_further_step(fresh: Fresh) {
     let (ada, prof) =
         (server.member(&admin, "physics", "ada", "student"), server.member(&admin, "physics", "prof", "staff"));
     let id = ada.submit("physics", &program("WA", 70));
-    // Until it runs, everybody who waits reads why.
+    // Until the worker runs, waiting people read the reason.
     let page = format!("/c/physics/s/{id}");
     let says = |client: &Client, page: &str| client.get(page).expect(200).text().contains("No worker is connected");
     assert!(says(&ada, &page) && says(&prof, "/") && !says(&ada, "/"));
