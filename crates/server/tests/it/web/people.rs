@@ -94,7 +94,7 @@ async fn a_name_is_changed_by_staff_of_its_course_alone(fresh: Fresh) {
         members[0]["name"].as_str().expect("a name").to_owned()
     };
     assert_eq!(rename(&teacher, "Ada+King"), "Ada King");
-    assert!(teacher.get("/c/physics/audit").expect(200).text().contains("ada is renamed"));
+    assert!(teacher.get("/c/physics/audit").expect(200).text().contains("ada was renamed"));
     // In two courses, she has one name, which the staff of neither may change.
     add(&admin, "other", "ada", "student");
     assert_eq!(rename(&teacher, "Eve"), "Ada King");

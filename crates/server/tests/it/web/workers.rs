@@ -250,7 +250,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
     admin.post_form("/admin/workers", "name=lab").expect(409);
     admin.send("DELETE", &format!("/api/v1/worker-tokens/{id}"), &[], b"").expect(204);
     let log = admin.get("/admin/log").expect(200).text();
-    assert!(log.contains(">lab<") && log.contains("lab is revoked"), "{log}");
+    assert!(log.contains("created lab") && log.contains("revoked lab"), "{log}");
     worker.post_json("/api/v1/worker/claim", "{}").expect(401);
 }
 
