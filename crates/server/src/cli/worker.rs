@@ -26,7 +26,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         let Some(file) = &arguments.token_file else {
             bail!("a worker for {server} needs its token: --token-file FILE");
         };
-        return work_for_server(server, file, arguments, stop).await;
+        return run_http(server, file, arguments, stop).await;
     }
     let folders = ServiceFolders::find_database(&arguments.storage)?;
     let (database, address) = folders.open_database(&arguments.storage).await?;
@@ -52,12 +52,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
 }
 
 /// Grades jobs of a server on another machine, over HTTP.
-async fn work_for_server(
-    server: &str,
-    token_file: &Path,
-    arguments: &WorkerArguments,
-    stop: CancellationToken,
-) -> Result<()> {
+async fn run_http(server: &str, token_file: &Path, arguments: &WorkerArguments, stop: CancellationToken) -> Result<()> {
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();

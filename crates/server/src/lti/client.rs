@@ -67,6 +67,9 @@ impl From<DbError> for ServiceFault {
     }
 }
 
+/// The answer to a request, or the reason why it failed.
+type ServiceResult = Result<ServiceAnswer, ServiceFault>;
+
 /// A platform's answer to a request.
 #[derive(Debug)]
 pub(super) struct ServiceAnswer {
@@ -143,12 +146,7 @@ impl Client {
         self.send(platform, &request, None).await?.ensure_success()
     }
 
-    async fn send(
-        &self,
-        platform: &Platform,
-        ask: &ServiceRequest,
-        token: Option<&str>,
-    ) -> Result<ServiceAnswer, ServiceFault> {
+    async fn send(&self, platform: &Platform, ask: &ServiceRequest, token: Option<&str>) -> ServiceResult {
         let Some(url) = platform.service_address(&ask.address, self.over_http) else {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "another host".to_owned());

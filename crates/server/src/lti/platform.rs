@@ -134,11 +134,10 @@ impl Platform {
     /// Returns the origins whose pages may show a page of this service in a frame.
     pub fn origins(&self, over_http: bool) -> String {
         let scheme = if over_http { "http://" } else { "https://" };
-        let mut places: Vec<String> =
-            self.service_hosts(over_http).iter().map(|place| format!("{scheme}{place}")).collect();
-        places.sort();
-        places.dedup();
-        places.join(" ")
+        let mut all: Vec<String> = self.service_hosts(over_http).iter().map(|host| format!("{scheme}{host}")).collect();
+        all.sort();
+        all.dedup();
+        all.join(" ")
     }
 }
 

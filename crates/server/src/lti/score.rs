@@ -90,7 +90,7 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
 
 /// A score that is ready to be sent.
 #[derive(Debug, Clone)]
-pub(super) struct PreparedScore {
+pub(super) struct ReadyScore {
     pub(super) order: ScoreOrder,
     pub(super) platform: Platform,
     /// The platform's identifier of the person.
@@ -108,10 +108,7 @@ pub(super) struct PreparedScore {
 }
 
 /// Returns the score to send for an order, with its time; `None` if there is nothing to send.
-pub(super) async fn prepare(
-    transaction: &mut Transaction,
-    order: ScoreOrder,
-) -> Result<Option<PreparedScore>, DbError> {
+pub(super) async fn prepare(transaction: &mut Transaction, order: ScoreOrder) -> Result<Option<ReadyScore>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
            platform_link.line_items, platform_link.resource, platform_link.assignment, assignment.slug,
@@ -147,7 +144,7 @@ pub(super) async fn prepare(
         }
     };
     let row = &row;
-    Ok(Some(read_row!(row => PreparedScore {
+    Ok(Some(read_row!(row => ReadyScore {
         subject, line_item, line_items, resource, slug, title;
         platform: Platform::from_row(row)?,
         order,
@@ -207,7 +204,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
 }
 
 /// Records that a platform has received the score. If there is a newer score, nothing is recorded.
-pub(super) async fn record_sent(transaction: &mut Transaction, score: &PreparedScore) -> Result<(), DbError> {
+pub(super) async fn record_sent(transaction: &mut Transaction, score: &ReadyScore) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
     transaction.execute(statement, values![score.order.link, score.order.account, score.stamp]).await?;

@@ -2,7 +2,7 @@
 use super::{
     Lti, ServiceFault,
     client::{ServiceRequest, scope},
-    score::{self, ColumnState, PreparedScore, ScoreOrder},
+    score::{self, ColumnState, ReadyScore, ScoreOrder},
 };
 use crate::{
     calendar,
@@ -146,7 +146,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
 }
 
 /// Sends the score of a claimed job and returns it; `None` if there is no score to send.
-async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<PreparedScore>, ServiceFault> {
+async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<ReadyScore>, ServiceFault> {
     let order: ScoreOrder = serde_json::from_str(&claim.payload)
         .map_err(|error| ServiceFault::Rejected(format!("the job can't be read: {error}")))?;
     let mut transaction = database.begin().await?;
@@ -190,7 +190,7 @@ struct LineItem {
 }
 
 /// Returns the column for a link without a known column. One caller finds or creates it while the others wait.
-async fn line_item(database: &Database, lti: &Lti, score: &PreparedScore) -> Result<String, ServiceFault> {
+async fn line_item(database: &Database, lti: &Lti, score: &ReadyScore) -> Result<String, ServiceFault> {
     let Some(container) = &score.line_items else {
         return Err(ServiceFault::Rejected("the platform's grade book has no column for this link".to_owned()));
     };
@@ -218,7 +218,7 @@ async fn line_item(database: &Database, lti: &Lti, score: &PreparedScore) -> Res
 async fn find_or_create(
     database: &Database,
     lti: &Lti,
-    score: &PreparedScore,
+    score: &ReadyScore,
     container: &str,
 ) -> Result<String, ServiceFault> {
     let unreadable = |error| ServiceFault::Rejected(format!("the grade book's columns can't be read: {error}"));

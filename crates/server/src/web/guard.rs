@@ -1,5 +1,6 @@
 //! Rules for every request: which sites may send it, the headers of its answer, and its entry in the log.
-use super::{identification, input::ArrivalTime};
+use super::identification::{self, secrets};
+use super::input::ArrivalTime;
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
@@ -28,15 +29,13 @@ const CONNECT_ADDRESS: &str = "/account/provider";
 pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
     if (is_safe_method(request.method()) && request.uri().path() != CONNECT_ADDRESS)
         || PLATFORM_ADDRESSES.contains(&request.uri().path())
-        || identification::secrets(request.headers(), app.is_secure()).bearer.is_some()
+        || secrets(request.headers(), app.is_secure()).bearer.is_some()
         || is_same_site(request.headers(), &app)
     {
         return next.run(request).await;
     }
     // A request without any of these headers comes from a program, which needs a token.
-    if request.uri().path().starts_with("/api/")
-        && identification::secrets(request.headers(), app.is_secure()).session.is_none()
-    {
+    if request.uri().path().starts_with("/api/") && secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }
     Problem::cross_site().into_response()

@@ -49,7 +49,7 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
         )),
         (End::Code(_), _) => Ok(()),
         (End::Signal(_), _) => {
-            Err("the grader failed while it checked the suite, perhaps because of its size".to_owned())
+            Err("the grader failed while checking the suite, perhaps because of its size".to_owned())
         }
     }
 }

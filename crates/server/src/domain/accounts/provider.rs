@@ -40,9 +40,8 @@ impl App {
 
     /// Computes the secrets for a sign-in with this state.
     async fn compute_secrets(&self, state: &str) -> Result<SignInSecrets, Problem> {
-        let (nonce, verifier) =
-            (self.compute_secret("nonce", state).await?, self.compute_secret("verifier", state).await?);
-        Ok(SignInSecrets { state: state.to_owned(), nonce, verifier })
+        let nonce = self.compute_secret("nonce", state).await?;
+        Ok(SignInSecrets { state: state.to_owned(), nonce, verifier: self.compute_secret("verifier", state).await? })
     }
 }
 

@@ -56,17 +56,11 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if a name is invalid, or the member was changed after the event `seen_event`.
-    pub async fn set_member(
-        &self,
-        login: &str,
-        name: &str,
-        role: &str,
-        seen_event: Option<i64>,
-    ) -> Result<Link, Problem> {
+    /// Fails if a name is invalid, or the member was changed after the event `since`.
+    pub async fn set_member(&self, login: &str, name: &str, role: &str, since: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), seen_event).await?;
+        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), since).await?;
         let link = self.add_member(&mut transaction, login, name, role).await?;
         transaction.commit().await?;
         Ok(Link { link })
@@ -84,7 +78,7 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Rejects a change if another person has changed the same thing after the event `seen_event`. The error names
+    /// Rejects a change if another person has changed the same thing after the event `since`. The error names
     /// that person and their change. A later event counts if it has the same kind and assignment, and its text begins
     /// with `beginning`.
     pub(in crate::domain) async fn check_last_event(
@@ -92,9 +86,9 @@ impl Staff {
         transaction: &mut Transaction,
         (kind, assignment): (&str, Option<i64>),
         beginning: &str,
-        seen_event: Option<i64>,
+        since: Option<i64>,
     ) -> Result<(), Problem> {
-        let Some(seen) = seen_event else { return Ok(()) };
+        let Some(seen) = since else { return Ok(()) };
         let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
             WHERE event.course = ? AND event.id > ? AND event.kind = ? AND coalesce(event.assignment, 0) = ?
                AND {strpos}(event.text, ?) = 1
@@ -199,10 +193,10 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if the person is not a member, or was changed after the event `seen_event`.
-    pub async fn remove_member(&self, login: &str, seen_event: Option<i64>) -> Result<(), Problem> {
+    /// Fails if the person is not a member, or was changed after the event `since`.
+    pub async fn remove_member(&self, login: &str, since: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
-        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), seen_event).await?;
+        self.check_last_event(&mut transaction, ("member", None), &format!("{login} "), since).await?;
         self.check_remaining(&mut transaction, login, "out").await?;
         let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
         let removed = transaction.execute(statement, values![self.course, login]).await?;

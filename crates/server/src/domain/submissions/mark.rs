@@ -187,13 +187,13 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if there is no such student, or the date was changed after the event `seen_event`.
+    /// Fails if there is no such student, or the date was changed after the event `since`.
     pub async fn extend(
         &self,
         slug: &str,
         login: &str,
         due_at: Option<i64>,
-        seen_event: Option<i64>,
+        since: Option<i64>,
     ) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         let wrong = "due_at must be milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00";
@@ -202,7 +202,7 @@ impl Staff {
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
         let beginning = format!("{login} ");
-        self.check_last_event(&mut transaction, ("extension", Some(assignment.id)), &beginning, seen_event).await?;
+        self.check_last_event(&mut transaction, ("extension", Some(assignment.id)), &beginning, since).await?;
         let statement = "DELETE FROM extension WHERE assignment = ? AND account = ?";
         transaction.execute(statement, values![assignment.id, account]).await?;
         if let Some(due) = due_at {
@@ -214,10 +214,9 @@ impl Staff {
         if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
             score::queue_changed_scores(&mut transaction, last).await?;
         }
-        let until = due_at.map_or("lost the extension".to_owned(), |due| {
-            format!("got an extension until {} UTC", calendar::format_minute(due))
-        });
-        let text = format!("{login} {until}");
+        let time = due_at.map(calendar::format_minute);
+        let change = time.map_or("lost the extension".to_owned(), |time| format!("got an extension until {time} UTC"));
+        let text = format!("{login} {change}");
         self.log_event(&mut transaction, "extension", Some(assignment.id), &text).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }

@@ -71,7 +71,7 @@ pages! {
     get "/sign-in/provider" => provider::begin_sign_in,
     get "/sign-in/provider/answer" => provider::accept,
     get "/welcome/{secret}" => sign_in::show_welcome,
-    post "/welcome/{secret}" => sign_in::sign_in_by_link,
+    post "/welcome/{secret}" => sign_in::use_link,
     post "/sign-out" => sign_in::sign_out,
     get "/account" => account::show_account,
     get "/account/provider" => provider::begin_connection,

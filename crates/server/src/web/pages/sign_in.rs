@@ -125,10 +125,7 @@ pub(super) async fn show_welcome(visitor: Visitor, AddressParts { secret, .. }: 
     render(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
 }
 
-pub(super) async fn sign_in_by_link(
-    visitor: Visitor,
-    AddressParts { secret, .. }: AddressParts,
-) -> Result<Response, Problem> {
+pub(super) async fn use_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
     Ok(start_session(&visitor.app, &session, "/"))
 }

@@ -56,7 +56,7 @@ pub(super) struct Statistics {
     /// The likely mistakes of students, the most frequent first.
     pub(super) mistakes: Vec<StudentCluster>,
     /// The files that several students submitted unchanged.
-    pub(super) identical_files: Vec<StudentCluster>,
+    pub(super) duplicates: Vec<StudentCluster>,
 }
 
 impl Statistics {
@@ -74,12 +74,10 @@ impl Statistics {
             mean_and_median: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
             histogram: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_clusters(standings, likely_mistake),
-            identical_files: find_clusters(standings, |counts| {
-                Some(counts.digest.as_str()).filter(|digest| !digest.is_empty())
-            })
-            .into_iter()
-            .filter(|(_, logins, _)| logins.len() > 1)
-            .collect(),
+            duplicates: find_clusters(standings, |one| Some(one.digest.as_str()).filter(|digest| !digest.is_empty()))
+                .into_iter()
+                .filter(|(_, logins, _)| logins.len() > 1)
+                .collect(),
         }
     }
 
@@ -96,14 +94,11 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Groups students by the value that `value_of` returns for their submissions. The largest groups are first.
-fn find_clusters(
-    standings: &[ShortStanding],
-    value_of: impl Fn(&CountedSubmission) -> Option<&str>,
-) -> Vec<StudentCluster> {
+/// Groups students by the value that `key` returns for their submissions. The largest groups are first.
+fn find_clusters(standings: &[ShortStanding], key: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<StudentCluster> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {
-        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, value_of(counts)?))) else {
+        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, key(counts)?))) else {
             continue;
         };
         found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(standing.login.clone());
