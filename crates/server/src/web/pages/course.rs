@@ -142,8 +142,7 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
-    #[serde(rename = "seen")]
-    seen_event: Option<i64>,
+    seen: Option<i64>,
 }
 
 /// Returns the assignments of a course as rows of its table.
@@ -228,7 +227,7 @@ pub(super) async fn show_members(staff: Staff, QueryInput(look): QueryInput<Peop
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen_event).await?.link;
+    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen).await?.link;
     render_members(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 
