@@ -24,7 +24,8 @@ impl Element<'_> {
 /// Joins the lines of a file as the original does: line feeds vanish, and a NUL ends the text.
 pub(super) fn join_lines(bytes: &[u8]) -> Vec<u8> {
     // The original searches for the NUL after joining; the order makes no difference.
-    bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
+    let text = bytes.split(|&byte| byte == 0).next().unwrap_or_default();
+    text.split(|&byte| byte == b'\n').collect::<Vec<_>>().concat()
 }
 
 /// Reads the children of the first root named `scene`, or nothing if there is no such root. The error is the text of

@@ -10,6 +10,7 @@ mod tests;
 
 use crate::scene::{Edge, Scene};
 use fosssim_num::vector::{Vec2, vector_at};
+pub(super) use strips::sort_nearly_sorted;
 use strips::{PlacedParticle, Rectangle, Strips};
 
 /// The maximum ratio between the radii of one size class.

@@ -6,6 +6,7 @@
 //! insertions.
 use super::MIN_REACH;
 use fosssim_num::vector::{Vec2, vector_at};
+use std::cmp::Ordering;
 
 /// The factor by which strips are higher than the reach of two particles, so that rounding never puts two particles in
 /// reach more than one row apart.
@@ -96,7 +97,9 @@ impl Strips {
                 (i64::MAX, Vec2::new(f64::INFINITY, f64::INFINITY))
             };
         }
-        sort(&mut self.entries);
+        sort_nearly_sorted(&mut self.entries, |one, other| {
+            one.row.cmp(&other.row).then(one.position.x.total_cmp(&other.position.x))
+        });
         let placed = self.entries.iter().rposition(|entry| entry.position.x.is_finite()).map_or(0, |last| last + 1);
         self.rows.clear();
         for (index, entry) in self.entries[..placed].iter().enumerate() {
@@ -201,24 +204,16 @@ fn row_of(y: f64, density: f64) -> i64 {
     row.clamp(FIRST_ROW, LAST_ROW)
 }
 
-/// Sorts entries by row and x. Nearly sorted lists take one comparison per entry, others are sorted by the standard
-/// library.
-fn sort(entries: &mut [PlacedParticle]) {
-    let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
-        one.row < other.row || one.row == other.row && one.position.x < other.position.x
-    };
+/// Sorts entries. Nearly sorted lists take one comparison per entry, others are sorted by the standard library.
+pub fn sort_nearly_sorted<T: Copy>(entries: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     // In a large scene a few percent of the entries change rows in a step, and pass all entries between.
     let mut moves = 8 * entries.len();
     for index in 1..entries.len() {
-        if !is_before(&entries[index], &entries[index - 1]) {
-            continue;
-        }
         let (entry, mut place) = (entries[index], index);
-        while place > 0 && is_before(&entry, &entries[place - 1]) {
+        while place > 0 && compare(&entry, &entries[place - 1]).is_lt() {
             if moves == 0 {
                 entries[place] = entry;
-                entries.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.position.x.total_cmp(&b.position.x)));
-                return;
+                return entries.sort_unstable_by(compare);
             }
             entries[place] = entries[place - 1];
             (place, moves) = (place - 1, moves - 1);

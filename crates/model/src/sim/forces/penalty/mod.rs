@@ -6,6 +6,7 @@
 //! Each detection sums the pairs in a specific order ([`PenaltyPairs`]).
 mod introsort;
 mod pairs;
+mod rows;
 mod sweep;
 mod terms;
 #[cfg(test)]

@@ -4,16 +4,13 @@
 //! least one edge per hundred particles, boxes must overlap on x + y and x - y as well. The search visits bodies in the
 //! order of their lower ends on x. It continues from the order of the previous search, so bodies with equal lower ends
 //! keep their order; the first order is that of the C++ library's sort.
-use super::introsort;
-use crate::scene::Scene;
+use super::{introsort, rows::Rows};
+use crate::{scene::Scene, sim::nearby::sort_nearly_sorted};
 use fosssim_num::vector::{Vec2, vector_at};
 use std::f64::consts::SQRT_2;
 
 /// The maximum number of particles per edge in scenes whose boxes have four axes.
 const PARTICLES_PER_EDGE: usize = 100;
-
-/// The number of boxes that are compared on y at a time.
-const BLOCK_BOXES: usize = 8;
 
 /// The order of bodies after the previous search.
 ///
@@ -32,8 +29,10 @@ pub(super) struct Sweep {
     edges: Vec<([usize; 2], f64)>,
     particle_boxes: Vec<BodyExtent>,
     edge_boxes: Vec<BodyExtent>,
-    /// The lower and upper ends of the particles' boxes on y, in arrays for many comparisons at a time.
-    heights: [Vec<f64>; 2],
+    /// The rows of the particles' boxes.
+    rows: Rows,
+    /// Whether the ends of all particles' boxes on x and y are finite, and in order. If not, rows cannot be used.
+    has_rows: bool,
     /// The memory for sorting boxes.
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
     /// For each edge, the largest upper end on x of this edge and the edges before it.
@@ -42,7 +41,7 @@ pub(super) struct Sweep {
 
 /// A body's extent on x, y, x + y and x - y.
 #[derive(Debug, Clone, Copy, Default)]
-struct BodyExtent {
+pub(super) struct BodyExtent {
     body: u32,
     low: [f64; 4],
     high: [f64; 4],
@@ -58,7 +57,8 @@ impl Sweep {
             edges: scene.edges.iter().map(|edge| ([edge.first, edge.second], edge.radius)).collect(),
             particle_boxes: Vec::with_capacity(scene.particles.len()),
             edge_boxes: Vec::with_capacity(edges),
-            heights: Default::default(),
+            rows: Rows::default(),
+            has_rows: false,
             sort_buffers: Default::default(),
             furthest: Vec::with_capacity(edges),
         }
@@ -82,8 +82,7 @@ impl Sweep {
 
     /// Sorts the bodies for positions `x` (2N).
     pub fn update(&mut self, x: &[f64]) {
-        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sort_buffers: sorting, furthest } =
-            self;
+        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, sort_buffers, furthest, .. } = self;
         let particle = |body: u32| {
             let place = vector_at(x, body as usize);
             BodyExtent::from_points(body, [place; 2], radii[body as usize], *has_four_axes)
@@ -92,11 +91,12 @@ impl Sweep {
             let (ends, radius) = edges[body as usize];
             BodyExtent::from_points(body, ends.map(|end| vector_at(x, end)), radius, *has_four_axes)
         };
-        sort(particle_boxes, radii.len(), sorting, particle);
-        sort(edge_boxes, edges.len(), sorting, edge);
-        heights.iter_mut().for_each(Vec::clear);
-        heights[0].extend(particle_boxes.iter().map(|one| one.low[1]));
-        heights[1].extend(particle_boxes.iter().map(|one| one.high[1]));
+        sort(particle_boxes, radii.len(), sort_buffers, particle);
+        sort(edge_boxes, edges.len(), sort_buffers, edge);
+        self.has_rows = particle_boxes.iter().all(BodyExtent::is_finite);
+        if self.has_rows {
+            self.rows.assign(particle_boxes);
+        }
         furthest.clear();
         furthest.extend(edge_boxes.iter().scan(f64::NEG_INFINITY, |furthest, one| {
             *furthest = furthest.max(one.high[0]);
@@ -107,45 +107,16 @@ impl Sweep {
     /// Calls `visit` for all nearby pairs of particles, with the smaller number first.
     pub fn visit_particles(&self, mut visit: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
-        let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
-            if one.overlaps(other) {
-                let (one, other) = (one.body as usize, other.body as usize);
-                visit(one.min(other), one.max(other));
-            }
+        let mut visit_boxes = |one: &BodyExtent, other: &BodyExtent| {
+            let (one, other) = (one.body as usize, other.body as usize);
+            visit(one.min(other), one.max(other));
         };
-        let begins_behind = |other: &BodyExtent, one: &BodyExtent| other.low[0] > one.high[0];
-        // A box whose lower end is NaN splits the order into parts.
-        let is_one_order = boxes.iter().all(|one| !one.low[0].is_nan());
-        let mut end = 0;
+        if self.has_rows {
+            return self.rows.visit_overlaps(boxes, visit_boxes);
+        }
         for (index, one) in boxes.iter().enumerate() {
-            if !is_one_order {
-                let near = boxes[index + 1..].iter().take_while(|other| !begins_behind(other, one));
-                near.for_each(|other| hear_if_near(one, other));
-                continue;
-            }
-            // Boxes of similar sizes end in a similar order, so the end of the near boxes moves little.
-            end = end.max(index + 1);
-            while end < boxes.len() && !begins_behind(&boxes[end], one) {
-                end += 1;
-            }
-            while end > index + 1 && begins_behind(&boxes[end - 1], one) {
-                end -= 1;
-            }
-            let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK_BOXES>();
-            let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK_BOXES>();
-            for (block, (lows, highs)) in lows.iter().zip(highs).enumerate() {
-                // Keys are as wide as the floating-point numbers, so that several are compared at a time.
-                let mut far = [0_u64; BLOCK_BOXES];
-                for ((far, low), high) in far.iter_mut().zip(lows).zip(highs) {
-                    *far = u64::from(one.low[1] > *high) | u64::from(*low > one.high[1]);
-                }
-                if far.iter().sum::<u64>() < BLOCK_BOXES as u64 {
-                    let first = index + 1 + block * BLOCK_BOXES;
-                    let found = boxes[first..].iter().zip(far).filter(|(_, far)| *far == 0);
-                    found.for_each(|(other, _)| hear_if_near(one, other));
-                }
-            }
-            boxes[end - more_lows.len()..end].iter().for_each(|other| hear_if_near(one, other));
+            let near = boxes[index + 1..].iter().take_while(|other| !other.begins_behind(one));
+            near.filter(|other| one.overlaps(other)).for_each(|other| visit_boxes(one, other));
         }
     }
 
@@ -153,7 +124,7 @@ impl Sweep {
     pub fn visit_edges(&self, mut visit: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
             let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
-            for other in self.edge_boxes[first..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
+            for other in self.edge_boxes[first..].iter().take_while(|other| !other.begins_behind(one)) {
                 let (particle, edge) = (one.body as usize, other.body as usize);
                 if one.overlaps(other) && !self.edges[edge].0.contains(&particle) {
                     visit(particle, edge);
@@ -182,7 +153,7 @@ fn sort(
     keys.clear();
     keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(sort_key(one.low[0])) << 32 | u128::from(rank)));
     for part in keys.split_mut(|key| boxes[*key as u32 as usize].low[0].is_nan()) {
-        part.sort_unstable();
+        sort_nearly_sorted(part, u128::cmp);
     }
     sorted.clear();
     sorted.extend(keys.iter().map(|key| boxes[*key as u32 as usize]));
@@ -214,9 +185,24 @@ impl BodyExtent {
         own
     }
 
+    /// Returns the lower and the upper end on y.
+    pub fn ends_on_y(&self) -> [f64; 2] {
+        [self.low[1], self.high[1]]
+    }
+
+    /// Returns whether the ends on x and y are finite, and no upper end is below its lower end.
+    fn is_finite(&self) -> bool {
+        [0, 1].iter().all(|&axis| self.low[axis] <= self.high[axis] && (self.high[axis] - self.low[axis]).is_finite())
+    }
+
+    /// Returns whether the box begins behind the end of `other` on x.
+    pub fn begins_behind(&self, other: &Self) -> bool {
+        self.low[0] > other.high[0]
+    }
+
     /// Returns whether boxes overlap or touch on all axes; x is tested last, because the search has found them near on
     /// x.
-    fn overlaps(&self, other: &Self) -> bool {
+    pub fn overlaps(&self, other: &Self) -> bool {
         [1, 2, 3, 0]
             .into_iter()
             .all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
