@@ -1,6 +1,9 @@
 //! Corrects the explanations of one trace with those of all traces of its program.
-use super::{Explanation, ExplanationTopic, WrongPairs, is_named_in, naming::explain_by_row};
-use fosssim_student::find;
+use super::{
+    Explanation, ExplanationTopic, WrongPairs, is_named_in, naming::explain_by_row, topic::PolynomialEvidence,
+};
+use fosssim_student::{assignments::t2m2::Subject, find};
+use std::collections::BTreeSet;
 
 /// The explanations of one trace, after all traces of its program are known.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -15,8 +18,10 @@ pub struct CorrectedTrace {
 /// Corrects a trace's own explanations with those of all traces together
 /// ([`explain_together`](super::explain_together)). If one of the common explanations applies to the trace, they
 /// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
-/// without those that are `refuted`.
+/// without those that are `refuted`. What it suggests about polynomials that nothing explains in all traces is replaced,
+/// because the other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
+    let own = &replace_contradicted(own, likely);
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreement(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
@@ -28,6 +33,26 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     // The step from which values are not finite is reported for each trace.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
     CorrectedTrace { agreed_count: explanations.len(), explanations }
+}
+
+/// Returns the explanations of a trace. Those of polynomials that nothing explains in all traces become one, which says
+/// so.
+fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Explanation> {
+    let unexplained = likely.iter().find_map(|one| match &one.topic {
+        ExplanationTopic::Polynomials { subjects, found: PolynomialEvidence::Nothing } => Some(subjects),
+        _ => None,
+    });
+    let is_contradicted = |one: &Explanation| {
+        let subjects = one.subjects();
+        !subjects.is_empty() && unexplained.is_some_and(|all| subjects.iter().all(|subject| all.contains(subject)))
+    };
+    let (contradicted, mut kept): (Vec<Explanation>, Vec<Explanation>) = own.iter().cloned().partition(is_contradicted);
+    if let Some(first) = contradicted.first() {
+        let subjects: BTreeSet<Subject> = contradicted.iter().flat_map(Explanation::subjects).collect();
+        let all = Explanation::for_wrong_polynomials(subjects.into_iter().collect(), PolynomialEvidence::Nothing);
+        kept.insert(0, Explanation { samples: first.samples, example: first.example.clone(), ..all });
+    }
+    kept
 }
 
 /// Returns the explanation without its refuted parts, or `None` if no part is left.

@@ -11,7 +11,7 @@ use super::{
     topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_model::sim::PairKind;
-use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
+use fosssim_student::{Area, CATALOGUE, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of mistakes reported for a program, in addition to empty stages.
@@ -71,6 +71,7 @@ pub fn explain_together<'a>(
             }
         }
     }
+    drop_disputed([&mut found, &mut empty], &traces);
     let is_unwritten = |subject: &Subject| {
         let rows = empty.iter().filter_map(|one| find(&one.key));
         rows.filter(|row| is_formula_area(row.area))
@@ -86,6 +87,30 @@ pub fn explain_together<'a>(
     near_pairs::merge_explanations(&mut found, &traces);
     let end = explain_non_finite_value(&traces).filter(|one| !refuted.contains(&one.key));
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
+}
+
+/// Drops names of different mistakes in one quantity that no trace shows together. A program makes one mistake there,
+/// which resembles these; the stage is reported instead.
+fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
+    let term = |one: &Explanation| match find(&one.key)?.mistake {
+        Mistake::Step(StepMistake::Edit(edit)) => Some(edit.term),
+        _ => None,
+    };
+    let is_shown = |list: &[Explanation], one: &Explanation| list.iter().any(|other| other.key == one.key);
+    let are_rivals = |one: &Explanation, other: &Explanation| {
+        let is_same_term = one.key != other.key && term(one).is_some() && term(one) == term(other);
+        is_same_term && !traces.iter().any(|list| is_shown(list, one) && is_shown(list, other))
+    };
+    let [found, empty] = lists;
+    let all = [found.as_slice(), empty.as_slice()].concat();
+    let has_rival = |one: &Explanation| all.iter().any(|other| are_rivals(one, other));
+    found.retain(|one| !has_rival(one));
+    empty.retain(|one| !has_rival(one));
+    if found.len() + empty.len() < all.len() {
+        let stages = || traces.iter().copied().flatten().filter(|one| one.names_stage());
+        let agreeing = |one: &Explanation| stages().filter(|other| other.key == one.key).count();
+        found.extend(stages().max_by_key(|one| agreeing(one)).cloned());
+    }
 }
 
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.

@@ -84,6 +84,10 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
 /// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points are not
 /// included.
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
+    // The simulator cannot make an unknown mistake.
+    if mistake.is_unexplained() {
+        return 0.0;
+    }
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
         let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();

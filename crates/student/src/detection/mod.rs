@@ -257,7 +257,9 @@ pub fn detect(
     if !is_within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let mut n = pair_axes(student, pair).transform_back(contact_vector(student, &motion, time));
+    let is_scaled = student.makes(Mistake::ContactTimeScaled);
+    let vector_time = if is_scaled { time * world.scene.time_step } else { time };
+    let mut n = pair_axes(student, pair).transform_back(contact_vector(student, &motion, vector_time));
     if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }

@@ -1,7 +1,7 @@
 //! A particle and an edge (collisions.md 2): the particle overlaps the infinite line, is between the endpoints, and
 //! approaches.
 use fosssim_model::sim::PointMotion;
-use fosssim_num::vector::Vec2;
+use fosssim_num::vector::{Vec2, length};
 
 use super::{
     VECTOR_AREAS,
@@ -118,6 +118,7 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         Some(Mistake::ParticleEdgeContactAlphaAtStart) => alpha(bodies, 0.0),
         Some(Mistake::ParticleEdgeContactAlphaAtEnd) => alpha(bodies, 1.0),
         Some(Mistake::ParticleEdgeContactAlphaMiddle) => 0.5,
+        Some(Mistake::ParticleEdgeContactAlphaOverLength) => alpha(bodies, t) * length(along),
         Some(Mistake::ParticleEdgeContactFromOtherEnd) => 1.0 - alpha(bodies, t),
         Some(Mistake::ParticleEdgeContactNearestEnd) => f64::from(u8::from(alpha(bodies, t) > 0.5)),
         Some(Mistake::ParticleEdgeContactClamped) => alpha(bodies, t).clamp(0.0, 1.0),
@@ -128,6 +129,12 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
     match mistake {
         Some(Mistake::ParticleEdgeContactReversed) => -(two.position_at(t) + alpha * along - one.start - t * one.shift),
         Some(Mistake::ParticleEdgeContactParticleStill) => two.position_at(t) + alpha * along - one.start,
+        Some(Mistake::ParticleEdgeContactParticleAdded) => {
+            two.position_at(t) + alpha * along - one.start + t * one.shift
+        }
+        Some(Mistake::ParticleEdgeContactAlphaTimesEnd) => {
+            two.position_at(t) + alpha * three.position_at(t) - one.position_at(t)
+        }
         Some(Mistake::ParticleEdgeContactEdgeStill) => {
             two.start + alpha * (three.start - two.start) - one.start - t * one.shift
         }

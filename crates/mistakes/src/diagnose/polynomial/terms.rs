@@ -17,6 +17,9 @@ const MAX_ROWS: usize = 240;
 /// well.
 const MIN_ROWS: usize = 12;
 
+/// The minimum number of samples for each weight of an unusual size. With fewer, some weights always fit.
+const MIN_ROWS_PER_WEIGHT: usize = 4;
+
 /// Weights are multiples of this step.
 const WEIGHT_STEP: f64 = 0.25;
 
@@ -202,6 +205,10 @@ impl<'a> TermFit<'a> {
         let mut found = Vec::new();
         prepared.find_supports(&target, |support| {
             let Some(changes) = snap_weights(support) else { return false };
+            let is_usual = changes.iter().all(|&change| has_usual_size(self.weights(power, change).1));
+            if !is_usual && rows.len() < MIN_ROWS_PER_WEIGHT * changes.len() {
+                return false;
+            }
             let edit = CoefficientEdit::Terms(changes);
             let holds = self.explains_all(power, &edit);
             if let (true, CoefficientEdit::Terms(changes)) = (holds, edit) {
@@ -267,6 +274,11 @@ impl<'a> TermFit<'a> {
         rows.extend(few(&right, MAX_ROWS / 2));
         rows
     }
+}
+
+/// Returns whether people write such a weight: zero, or a power of two from 1/4 to 4, with any sign.
+fn has_usual_size(weight: f64) -> bool {
+    [0.0, 0.25, 0.5, 1.0, 2.0, 4.0].contains(&weight.abs())
 }
 
 /// Rounds weights to multiples of [`WEIGHT_STEP`]. Returns `None` if they are not close to multiples.

@@ -340,3 +340,29 @@ fn the_first_nan_comes_after_proven_mistakes() {
         "{of_third:?}"
     );
 }
+
+/// Each scene alone suggests something else about the same quantity, which is one that no name fits.
+#[test]
+fn names_that_exclude_each_other_are_not_reported_together() {
+    let fault = StageFault::ContactVectors { kind: None, wrong: WrongVectors::Reversed };
+    let rivals = [vec![row("drag-missing", &[])], vec![row("drag-x-only", &[])], vec![stage(fault.clone())]];
+    assert_eq!(heads(&rivals), words(&[(&stage(fault), 1)]));
+    let both = vec![row("drag-mass", &[]), row("drag-x-only", &[])];
+    let together = [both.clone(), both, vec![row("drag-x-only", &[])]];
+    assert_eq!(heads(&together), words(&[(&row("drag-x-only", &[]), 3), (&row("drag-mass", &[]), 2)]));
+}
+
+/// A guess about a polynomial that the other scenes contradict is not shown on the scene that it fits, either.
+#[test]
+fn a_scene_alone_does_not_name_what_all_scenes_contradict() {
+    let subject = Subject::ParticleOverlap;
+    let (first, second) = (letter(subject, "one"), letter(subject, "other"));
+    let traces = [vec![first.clone()], vec![second], vec![unexplained(subject)], vec![unexplained(subject)]];
+    let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
+    assert!(likely[0].is_unexplained());
+    let shown = correct_trace(&traces[0], &likely, &[]).explanations;
+    assert_eq!(shown.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["unexplained"]);
+    let of_edges = letter(Subject::EdgeOverlap, "one");
+    let other = [first, of_edges.clone()];
+    assert_eq!(correct_trace(&other, &likely, &[]).explanations[1], of_edges, "the other polynomial keeps its guess");
+}

@@ -190,6 +190,7 @@ rows! {
         ParticleParticleContactReversed "pp-contact-reversed";
         ParticleParticleContactFirstStill "pp-contact-first-still";
         ParticleParticleContactSecondStill "pp-contact-second-still";
+        ParticleParticleContactFirstAdded "pp-contact-first-added";
         ParticleParticleContactFirstAtEnd "pp-contact-first-at-end";
         ParticleParticleContactSecondAtEnd "pp-contact-second-at-end";
         ParticleEdgeContactAtStart "pe-contact-at-start";
@@ -197,11 +198,14 @@ rows! {
         ParticleEdgeContactAlphaAtStart "pe-contact-alpha-at-start";
         ParticleEdgeContactAlphaAtEnd "pe-contact-alpha-at-end";
         ParticleEdgeContactAlphaMiddle "pe-contact-alpha-middle";
+        ParticleEdgeContactAlphaOverLength "pe-contact-alpha-over-length";
+        ParticleEdgeContactAlphaTimesEnd "pe-contact-alpha-times-end";
         ParticleEdgeContactFirstEnd "pe-contact-first-end";
         ParticleEdgeContactSecondEnd "pe-contact-second-end";
         ParticleEdgeContactFromOtherEnd "pe-contact-other-end";
         ParticleEdgeContactReversed "pe-contact-reversed";
         ParticleEdgeContactParticleStill "pe-contact-particle-still";
+        ParticleEdgeContactParticleAdded "pe-contact-particle-added";
         ParticleEdgeContactEdgeStill "pe-contact-edge-still";
         ParticleEdgeContactParticleAtEnd "pe-contact-particle-at-end";
         ParticleEdgeContactEdgeAtEnd "pe-contact-edge-at-end";
@@ -210,12 +214,14 @@ rows! {
         HalfPlaneContactDividedByLength "ph-contact-divided-by-length";
         HalfPlaneContactIsNormal "ph-contact-is-normal";
         HalfPlaneContactReversed "ph-contact-reversed";
+        HalfPlaneContactAdded "ph-contact-added";
         HalfPlaneContactAtStart "ph-contact-at-start";
         HalfPlaneContactAtEnd "ph-contact-at-end";
         HalfPlaneContactToPoint "ph-contact-to-point";
         ContactUnitLength "contact-unit-length";
         ContactSingle "contact-float";
         ContactNoise "contact-noise";
+        ContactTimeScaled "contact-time-scaled";
         ContactTimeZero "contact-time-zero";
         ContactTimeSingle "contact-time-float";
     }

@@ -121,6 +121,10 @@ const PAIR_FAMILY: MistakeFamily = MistakeFamily {
             ],
         ),
         (
+            "contact, first body's motion added",
+            &[Is("pp-contact-first-added"), Is("pe-contact-particle-added"), Is("ph-contact-added")],
+        ),
+        (
             "contact, first body at its end",
             &[
                 Row("pp-contact-first-at-end"),
