@@ -56,6 +56,9 @@ pub fn contact_vector(student: Student, centers: &[PointMotion; 2], t: f64) -> V
         Some(Mistake::ParticleParticleContactFirstStill) => two.position_at(t) - one.start,
         Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.position_at(t),
         Some(Mistake::ParticleParticleContactFirstAdded) => two.position_at(t) - one.start + t * one.shift,
+        Some(Mistake::ParticleParticleContactDisplacementsSwapped) => {
+            (two.start + t * one.shift) - (one.start + t * two.shift)
+        }
         Some(Mistake::ParticleParticleContactFirstAtEnd) => two.position_at(t) - one.position_at(1.0),
         Some(Mistake::ParticleParticleContactSecondAtEnd) => two.position_at(1.0) - one.position_at(t),
         Some(Mistake::ExtendedPrecision) => arithmetic::vector_between_particles::<WideNumber>(centers, t),

@@ -191,6 +191,7 @@ rows! {
         ParticleParticleContactFirstStill "pp-contact-first-still";
         ParticleParticleContactSecondStill "pp-contact-second-still";
         ParticleParticleContactFirstAdded "pp-contact-first-added";
+        ParticleParticleContactDisplacementsSwapped "pp-contact-displacements-swapped";
         ParticleParticleContactFirstAtEnd "pp-contact-first-at-end";
         ParticleParticleContactSecondAtEnd "pp-contact-second-at-end";
         ParticleEdgeContactAtStart "pe-contact-at-start";

@@ -122,7 +122,7 @@ const PAIR_FAMILY: MistakeFamily = MistakeFamily {
         ),
         (
             "contact, first body's motion added",
-            &[Is("pp-contact-first-added"), Is("pe-contact-particle-added"), Is("ph-contact-added")],
+            &[Row("pp-contact-first-added"), Row("pe-contact-particle-added"), Row("ph-contact-added")],
         ),
         (
             "contact, first body at its end",
@@ -271,6 +271,7 @@ const SINGLE_KIND_PREFIXES: &[(&str, &str)] = &[
     ("pe-square-", "a product of the quartic"),
     ("pe-linear-", "a product of the quartic"),
     ("pe-constant-", "a product of the quartic"),
+    ("pp-contact-displacements-swapped", "only two particles have displacements that look alike"),
     ("pe-radius-unscaled", "only the quartic has a denominator"),
     ("pe-displacements-swapped", "only an edge has two ends"),
     ("pe-endpoints-swapped", "only an edge has two ends"),
