@@ -18,8 +18,8 @@ pub struct CorrectedTrace {
 /// Corrects a trace's own explanations with those of all traces together
 /// ([`explain_together`](super::explain_together)). If one of the common explanations applies to the trace, they
 /// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
-/// without those that are `refuted`. What it suggests about polynomials that nothing explains in all traces is replaced,
-/// because the other traces contradict it.
+/// without those that are `refuted`. If nothing explains some polynomials in all traces, its own suggestion about them
+/// is replaced, because the other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreement(own, one));

@@ -257,9 +257,8 @@ pub fn detect(
     if !is_within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let is_scaled = student.makes(Mistake::ContactTimeScaled);
-    let vector_time = if is_scaled { time * world.scene.time_step } else { time };
-    let mut n = pair_axes(student, pair).transform_back(contact_vector(student, &motion, vector_time));
+    let time_unit = if student.makes(Mistake::ContactTimeScaled) { world.scene.time_step } else { 1.0 };
+    let mut n = pair_axes(student, pair).transform_back(contact_vector(student, &motion, time_unit * time));
     if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }

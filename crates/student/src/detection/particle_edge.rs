@@ -129,9 +129,7 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
     match mistake {
         Some(Mistake::ParticleEdgeContactReversed) => -(two.position_at(t) + alpha * along - one.start - t * one.shift),
         Some(Mistake::ParticleEdgeContactParticleStill) => two.position_at(t) + alpha * along - one.start,
-        Some(Mistake::ParticleEdgeContactParticleAdded) => {
-            two.position_at(t) + alpha * along - one.start + t * one.shift
-        }
+        Some(Mistake::ParticleEdgeContactParticleAdded) => two.position_at(t) + alpha * along - one.position_at(-t),
         Some(Mistake::ParticleEdgeContactAlphaTimesEnd) => {
             two.position_at(t) + alpha * three.position_at(t) - one.position_at(t)
         }

@@ -55,7 +55,7 @@ pub fn contact_vector(student: Student, one: &PointMotion, point: Vec2, normal: 
         Some(Mistake::HalfPlaneContactDividedByLength) => offset.dot(&normal) / square.sqrt() * normal,
         Some(Mistake::HalfPlaneContactIsNormal) => normal,
         Some(Mistake::HalfPlaneContactReversed) => -(offset.dot(&normal) / square * normal),
-        Some(Mistake::HalfPlaneContactAdded) => (point - one.start + t * one.shift).dot(&normal) / square * normal,
+        Some(Mistake::HalfPlaneContactAdded) => (point - one.position_at(-t)).dot(&normal) / square * normal,
         Some(Mistake::HalfPlaneContactAtStart) => (point - one.start).dot(&normal) / square * normal,
         Some(Mistake::HalfPlaneContactAtEnd) => (point - one.position_at(1.0)).dot(&normal) / square * normal,
         Some(Mistake::HalfPlaneContactToPoint) => offset,

@@ -55,7 +55,7 @@ pub fn contact_vector(student: Student, centers: &[PointMotion; 2], t: f64) -> V
         Some(Mistake::ParticleParticleContactReversed) => one.position_at(t) - two.position_at(t),
         Some(Mistake::ParticleParticleContactFirstStill) => two.position_at(t) - one.start,
         Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.position_at(t),
-        Some(Mistake::ParticleParticleContactFirstAdded) => two.position_at(t) - one.start + t * one.shift,
+        Some(Mistake::ParticleParticleContactFirstAdded) => two.position_at(t) - one.position_at(-t),
         Some(Mistake::ParticleParticleContactDisplacementsSwapped) => {
             (two.start + t * one.shift) - (one.start + t * two.shift)
         }

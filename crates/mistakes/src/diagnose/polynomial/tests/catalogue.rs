@@ -1,6 +1,6 @@
 //! The students of the catalogue on small random scenes: a mistake is explained correctly, and a correct variant is not
 //! explained at all.
-use super::{Numbers, PairKind, Sample, explain};
+use super::{Explanation, Numbers, PairKind, Sample, explain, particle_lists, samples};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{Pair, PairMotion, PointMotion},
@@ -217,4 +217,24 @@ fn explanations_say_what_the_catalogue_says() {
             assert_eq!(found.first().map(|one| one.key.as_str()), Some(key), "{id} {style:?}: {found:#?}");
         }
     }
+}
+
+/// Three samples fit three weights of any size, which proves nothing: the radii are multiplied here.
+#[test]
+fn odd_weights_from_few_samples_are_not_named() {
+    let multiplied = |motion: &PairMotion| {
+        let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
+        let mut lists = particle_lists(motion);
+        lists[0][2] += (r1 * r2).powi(2) - (r1 + r2).powi(2);
+        lists
+    };
+    let few = samples(PairKind::ParticleParticle, 3, particle_lists).into_iter();
+    let few: Vec<Sample> = (few.zip([[2.0, 3.0], [3.0, 2.0], [3.0, 3.0]]))
+        .map(|(sample, radii)| {
+            let PairMotion::Particles { centers, .. } = sample.motion else { panic!("no particles") };
+            let motion = PairMotion::Particles { centers, radii };
+            Sample { polynomials: multiplied(&motion), motion, ..sample }
+        })
+        .collect();
+    assert_eq!(explain(&few).iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), [Explanation::UNEXPLAINED]);
 }

@@ -554,26 +554,6 @@ fn partly_reproduced_mistakes_are_marked() {
     assert_eq!((noise[0].key.as_str(), noise[0].reproduced), ("unexplained", 0));
 }
 
-/// Three samples fit three weights of any size, which proves nothing: the radii are multiplied here.
-#[test]
-fn odd_weights_from_few_samples_are_not_named() {
-    let multiplied = |motion: &PairMotion| {
-        let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
-        let mut lists = particle_lists(motion);
-        lists[0][2] += (r1 * r2).powi(2) - (r1 + r2).powi(2);
-        lists
-    };
-    let few = samples(PairKind::ParticleParticle, 3, particle_lists).into_iter();
-    let few: Vec<Sample> = (few.zip([[2.0, 3.0], [3.0, 2.0], [3.0, 3.0]]))
-        .map(|(sample, radii)| {
-            let PairMotion::Particles { centers, .. } = sample.motion else { panic!("no particles") };
-            let motion = PairMotion::Particles { centers, radii };
-            Sample { polynomials: multiplied(&motion), motion, ..sample }
-        })
-        .collect();
-    assert_eq!(explain(&few).iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), [Explanation::UNEXPLAINED]);
-}
-
 #[test]
 fn hostile_samples_do_no_harm() {
     let strange = [f64::NAN, f64::INFINITY, 1e300, -0.0, 5e-324];

@@ -4,6 +4,7 @@
 //! and enters the gradient if the distance test is passed. Only the contest's detection has a guard.
 //!
 //! Each detection sums the pairs in a specific order ([`PenaltyPairs`]).
+mod extent;
 mod introsort;
 mod pairs;
 mod rows;

@@ -1,5 +1,5 @@
 //! Rows of equal height, each with the boxes that it touches, to find boxes that overlap on y.
-use super::sweep::BodyExtent;
+use super::extent::BodyExtent;
 
 /// The boxes of each row, in the order of the boxes.
 #[derive(Debug, Clone, Default)]

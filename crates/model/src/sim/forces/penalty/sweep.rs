@@ -4,10 +4,9 @@
 //! least one edge per hundred particles, boxes must overlap on x + y and x - y as well. The search visits bodies in the
 //! order of their lower ends on x. It continues from the order of the previous search, so bodies with equal lower ends
 //! keep their order; the first order is that of the C++ library's sort.
-use super::{introsort, rows::Rows};
+use super::{extent::BodyExtent, introsort, rows::Rows};
 use crate::{scene::Scene, sim::nearby::sort_nearly_sorted};
-use fosssim_num::vector::{Vec2, vector_at};
-use std::f64::consts::SQRT_2;
+use fosssim_num::vector::vector_at;
 
 /// The maximum number of particles per edge in scenes whose boxes have four axes.
 const PARTICLES_PER_EDGE: usize = 100;
@@ -37,14 +36,6 @@ pub(super) struct Sweep {
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
     /// For each edge, the largest upper end on x of this edge and the edges before it.
     furthest: Vec<f64>,
-}
-
-/// A body's extent on x, y, x + y and x - y.
-#[derive(Debug, Clone, Copy, Default)]
-pub(super) struct BodyExtent {
-    body: u32,
-    low: [f64; 4],
-    high: [f64; 4],
 }
 
 impl Sweep {
@@ -165,46 +156,4 @@ const fn sort_key(number: f64) -> u64 {
     // Adding zero turns -0 into 0.
     let bits = (number + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
-}
-
-impl BodyExtent {
-    /// Returns the extent around everything between two points, widened by `radius`.
-    fn from_points(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
-        let mut own = Self { body, ..Self::default() };
-        let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
-            // If two numbers cannot be compared, the second is used, as in the processor's instructions.
-            own.low[axis] = if one < other { one } else { other } - radius;
-            own.high[axis] = if one > other { one } else { other } + radius;
-        };
-        extend(0, one.x, other.x, radius);
-        extend(1, one.y, other.y, radius);
-        if has_four_axes {
-            extend(2, one.x + one.y, other.x + other.y, radius * SQRT_2);
-            extend(3, one.x - one.y, other.x - other.y, radius * SQRT_2);
-        }
-        own
-    }
-
-    /// Returns the lower and the upper end on y.
-    pub fn ends_on_y(&self) -> [f64; 2] {
-        [self.low[1], self.high[1]]
-    }
-
-    /// Returns whether the ends on x and y are finite, and no upper end is below its lower end.
-    fn is_finite(&self) -> bool {
-        [0, 1].iter().all(|&axis| self.low[axis] <= self.high[axis] && (self.high[axis] - self.low[axis]).is_finite())
-    }
-
-    /// Returns whether the box begins behind the end of `other` on x.
-    pub fn begins_behind(&self, other: &Self) -> bool {
-        self.low[0] > other.high[0]
-    }
-
-    /// Returns whether boxes overlap or touch on all axes; x is tested last, because the search has found them near on
-    /// x.
-    pub fn overlaps(&self, other: &Self) -> bool {
-        [1, 2, 3, 0]
-            .into_iter()
-            .all(|axis| !(self.low[axis] > other.high[axis]) && !(other.low[axis] > self.high[axis]))
-    }
 }

@@ -120,10 +120,7 @@ const PAIR_FAMILY: MistakeFamily = MistakeFamily {
                 No("the same as at the start, where nothing else moves"),
             ],
         ),
-        (
-            "contact, first body's motion added",
-            &[Row("pp-contact-first-added"), Row("pe-contact-particle-added"), Row("ph-contact-added")],
-        ),
+        ("contact, added", &[Row("pp-contact-first-added"), Row("pe-contact-particle-added"), Row("ph-contact-added")]),
         (
             "contact, first body at its end",
             &[
