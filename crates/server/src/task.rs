@@ -21,6 +21,9 @@ pub struct Task {
     /// The level of detail in reports for students: `none`, `where`, `what` or `full`. If missing, the suite decides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<String>,
+    /// Whether reports show the smallest scenes on which a program is still wrong.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub smallest: bool,
     /// The name of the executable that a submission of sources builds.
     pub program: String,
     /// The number of seconds after which the grading is stopped. The results until then count.

@@ -80,6 +80,9 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
+        if task.smallest {
+            command.arg("--smallest");
+        }
         // Reports contain only what students may see, except for hidden groups. Only the page leaves hidden groups out,
         // so the server shows the other reports to staff only.
         command.args(["--for", "student"]);

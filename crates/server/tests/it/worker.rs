@@ -55,6 +55,7 @@ async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
             suite: Suite::Named("t2m2".to_owned()),
             rules: None,
             hints: None,
+            smallest: false,
             program: "FOSSSim".to_owned(),
             seconds: 60,
         };

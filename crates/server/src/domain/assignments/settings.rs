@@ -37,6 +37,9 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
+    /// Whether reports show the smallest scenes on which a program is still wrong.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub smallest: bool,
     /// The accepted forms of submissions: `program`, `sources`, `traces`.
     #[schema(value_type = Vec<Form>, min_items = 1)]
     pub forms: Vec<String>,
@@ -120,6 +123,7 @@ impl Default for Settings {
             suite_archive: None,
             rules: None,
             hints: None,
+            smallest: false,
             forms: vec!["program".to_owned()],
             program: "FOSSSim".to_owned(),
             seconds: 600,
@@ -199,8 +203,8 @@ impl Settings {
 
     /// Returns these settings with the grading rules of `other`.
     pub(in crate::domain) fn with_grading_of(&self, other: &Self) -> Self {
-        let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
-        Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
+        let Self { suite, suite_archive, rules, hints, smallest, program, seconds, .. } = other.clone();
+        Self { suite, suite_archive, rules, hints, smallest, program, seconds, ..self.clone() }
     }
 
     /// Returns the settings as JSON, as the database stores them.
@@ -281,6 +285,7 @@ impl Settings {
             suite: self.suite(),
             rules: self.rules.clone(),
             hints: self.hints.clone(),
+            smallest: self.smallest,
             program: self.program.clone(),
             seconds: self.seconds,
         }

@@ -351,6 +351,7 @@ impl Settings {
             ("suite", suite(self), suite(new)),
             ("rules", describe_rules(&self.rules), describe_rules(&new.rules)),
             ("hints", hints(self), hints(new)),
+            ("smallest scenes", self.smallest.to_string(), new.smallest.to_string()),
             ("program", self.program.clone(), new.program.clone()),
             ("seconds", self.seconds.to_string(), new.seconds.to_string()),
         ]);

@@ -63,6 +63,7 @@ pub(super) struct Grading {
     suite: String,
     rules: String,
     hints: String,
+    smallest: Option<String>,
     program: String,
     seconds: String,
 }
@@ -84,6 +85,7 @@ impl Grading {
             suite_archive,
             rules: chosen(&self.rules),
             hints: chosen(&self.hints),
+            smallest: self.smallest.is_some(),
             program: self.program.trim().to_owned(),
             seconds: parse("seconds", &self.seconds)?,
             ..before.clone()

@@ -139,6 +139,7 @@ impl Arena {
             suite: Suite::Named("storm".to_owned()),
             rules: None,
             hints: None,
+            smallest: false,
             program: "FOSSSim".to_owned(),
             seconds: 600,
         };
