@@ -13,8 +13,8 @@ async fn settings_are_a_form(fresh: Fresh) {
     let settings = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["settings"].clone();
     let revision = || admin.get("/api/v1/courses/physics/assignments/m1").expect(200).json()["revision"].clone();
     let send = |path: &str, form: &str| admin.post_form(path, &format!("{form}&revision={}", revision()));
-    let form = "title=Milestone+one&visible=on&suite=course-2027&rules=&hints=what&smallest=on&program=FOSSSim&seconds=90\
-                &form_sources=on\
+    let form = "title=Milestone+one&visible=on&suite=course-2027&rules=&hints=what&smallest=on&program=FOSSSim\
+                &seconds=90&form_sources=on\
                 &megabytes=0.5&attempts=3&per_hour=0&late_days=2&late_percent=25";
     let path = "/c/physics/a/m1/settings";
     // Without a script, the field is in UTC and shows this. With a script, it is in the reader's time zone.
@@ -24,7 +24,8 @@ async fn settings_are_a_form(fresh: Fresh) {
     assert_eq!(settings(), utc);
     assert_eq!(
         utc,
-        serde_json::json!({"suite": "course-2027", "hints": "what", "smallest": true, "program": "FOSSSim", "seconds": 90,
+        serde_json::json!({"suite": "course-2027", "hints": "what", "smallest": true, "program": "FOSSSim",
+            "seconds": 90,
             "forms": ["sources"], "max_bytes": 524_288, "attempts": 3, "per_hour": 0, "due_at": 1_796_165_940_000_i64,
             "late_days": 2, "late_percent": 25})
     );
