@@ -437,7 +437,7 @@ fn the_cause_comes_first_and_tables_when_they_are_asked_for() {
     workspace.write("trace.bin", changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0)));
     let short = workspace.run(["check", "scene.xml", "trace.bin"]).out();
     let place = |words: &str| short.find(words).unwrap_or_else(|| panic!("no {words} in {short}"));
-    assert!(place("likely mistake") < place("First difference") && place("First difference") < place("Rule books"));
+    assert!(place("Likely cause") < place("First difference") && place("First difference") < place("Rule books"));
     assert!(!short.contains("tolerance  "), "{short}");
     let whole = workspace.run(["check", "scene.xml", "trace.bin", "--tables"]).out();
     assert!(whole.contains("accumulated position") && whole.contains("first example"), "{whole}");

@@ -17,7 +17,7 @@ const MAX_ROWS: usize = 240;
 /// well.
 const MIN_ROWS: usize = 12;
 
-/// The minimum number of samples for each weight of an unusual size. With fewer, some weights always fit.
+/// The minimum number of samples for each weight of an unusual size. With fewer samples, some weights always fit.
 const MIN_ROWS_PER_WEIGHT: usize = 4;
 
 /// Weights are multiples of this step.
@@ -206,7 +206,8 @@ impl<'a> TermFit<'a> {
         prepared.find_supports(&target, |support| {
             let Some(changes) = snap_weights(support) else { return false };
             let is_usual = changes.iter().all(|&change| has_usual_size(self.weights(power, change).1));
-            if !is_usual && rows.len() < MIN_ROWS_PER_WEIGHT * changes.len() {
+            let proves_nothing = changes.len() > 1 && rows.len() <= changes.len();
+            if proves_nothing || (!is_usual && rows.len() < MIN_ROWS_PER_WEIGHT * changes.len()) {
                 return false;
             }
             let edit = CoefficientEdit::Terms(changes);

@@ -6,9 +6,13 @@ use super::extent::BodyExtent;
 pub(super) struct Rows {
     /// The first and the last row of each box.
     spans: Vec<[usize; 2]>,
-    /// The start of each row in `boxes`, and the end of the last row.
+    /// The start of each row in `boxes_of_rows`, and the end of the last row.
     starts: Vec<usize>,
-    boxes: Vec<usize>,
+    boxes_of_rows: Vec<usize>,
+    /// The place after the current box in each row that it is in.
+    later: Vec<usize>,
+    /// The boxes that overlap the current one.
+    found: Vec<usize>,
 }
 
 impl Rows {
@@ -33,7 +37,7 @@ impl Rows {
 
     /// Lists the boxes of each row.
     fn collect_boxes(&mut self) {
-        let Self { spans, starts, boxes } = self;
+        let Self { spans, starts, boxes_of_rows: boxes, .. } = self;
         // While rows are filled, the entry after that of a row is the place of its next box.
         let rows = spans.iter().map(|[_, last]| last + 1).max().unwrap_or(0);
         starts.clear();
@@ -51,18 +55,19 @@ impl Rows {
 
     /// Calls `visit` for all pairs of boxes that overlap or touch, in order of the first box, then of the second. The
     /// boxes are those of [`assign`](Self::assign), sorted by their lower ends on x.
-    pub fn visit_overlaps(&self, boxes: &[BodyExtent], mut visit: impl FnMut(&BodyExtent, &BodyExtent)) {
-        let (mut later, mut found) = (self.starts.clone(), Vec::new());
-        for (one, &[first, last]) in boxes.iter().zip(&self.spans) {
+    pub fn visit_overlaps(&mut self, boxes: &[BodyExtent], mut visit: impl FnMut(&BodyExtent, &BodyExtent)) {
+        let Self { spans, starts, boxes_of_rows, later, found } = self;
+        later.clone_from(starts);
+        for (one, &[first, last]) in boxes.iter().zip(&*spans) {
             for row in first..=last {
                 later[row] += 1;
-                for &index in &self.boxes[later[row]..self.starts[row + 1]] {
+                for &index in &boxes_of_rows[later[row]..starts[row + 1]] {
                     let other = &boxes[index];
                     if other.begins_behind(one) {
                         break;
                     }
                     // A pair counts in the first row that both boxes are in.
-                    if row == first.max(self.spans[index][0]) && one.overlaps(other) {
+                    if row == first.max(spans[index][0]) && one.overlaps(other) {
                         found.push(index);
                     }
                 }

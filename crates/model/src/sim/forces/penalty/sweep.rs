@@ -96,7 +96,7 @@ impl Sweep {
     }
 
     /// Calls `visit` for all nearby pairs of particles, with the smaller number first.
-    pub fn visit_particles(&self, mut visit: impl FnMut(usize, usize)) {
+    pub fn visit_particles(&mut self, mut visit: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut visit_boxes = |one: &BodyExtent, other: &BodyExtent| {
             let (one, other) = (one.body as usize, other.body as usize);
