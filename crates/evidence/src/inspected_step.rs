@@ -207,8 +207,8 @@ impl<'a> Inspector<'a> {
             pass.is_logged = true;
         }
         let mut fates: Vec<CallLog> = Vec::with_capacity(self.reference_calls.len());
-        for asked in &self.reference_calls {
-            let of_call = &found[asked.first..asked.first + asked.count];
+        for call in &self.reference_calls {
+            let of_call = &found[call.first..call.first + call.count];
             let fate = if of_call.iter().all(Option::is_none) {
                 CallLog::Nothing
             } else {
@@ -216,16 +216,16 @@ impl<'a> Inspector<'a> {
                     of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
                 )
             };
-            if let Some(pass) = self.step.passes.get_mut(asked.number) {
+            if let Some(pass) = self.step.passes.get_mut(call.number) {
                 let is_wrong = |list: &[Vec<f64>]| {
                     list.iter()
-                        .zip(asked.first..)
+                        .zip(call.first..)
                         .any(|(own, place)| own.is_empty() || are_different(own, self.right_polynomials.get(place)))
                 };
                 match &fate {
-                    _ if asked.count == 0 => {}
-                    CallLog::Nothing => keep_pair(&mut pass.missing_pairs, asked.pair),
-                    CallLog::Polynomials(list) if is_wrong(list) => keep_pair(&mut pass.differing_pairs, asked.pair),
+                    _ if call.count == 0 => {}
+                    CallLog::Nothing => keep_pair(&mut pass.missing_pairs, call.pair),
+                    CallLog::Polynomials(list) if is_wrong(list) => keep_pair(&mut pass.differing_pairs, call.pair),
                     _ => {}
                 }
             }
@@ -244,26 +244,25 @@ impl<'a> Inspector<'a> {
                 place += 1;
                 continue;
             }
-            let again = |asked: &&ReferenceCall| {
-                asked.count > 0
-                    && place + asked.count <= log.len()
-                    && (0..asked.count).all(|k| {
+            let again = |call: &&ReferenceCall| {
+                call.count > 0
+                    && place + call.count <= log.len()
+                    && (0..call.count).all(|k| {
                         !is_claimed[place + k]
-                            && !are_different(log.get(place + k), self.right_polynomials.get(asked.first + k))
+                            && !are_different(log.get(place + k), self.right_polynomials.get(call.first + k))
                     })
             };
             let before =
                 found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < place)).map(|(own, _)| own).max();
-            let number =
-                before.and_then(|own| self.reference_calls.iter().find(|asked| asked.first + asked.count > own));
-            let number = number.map_or(0, |asked| asked.number);
-            match self.reference_calls.iter().filter(|asked| asked.number == number).find(again) {
-                Some(asked) => {
+            let number = before.and_then(|own| self.reference_calls.iter().find(|call| call.first + call.count > own));
+            let number = number.map_or(0, |call| call.number);
+            match self.reference_calls.iter().filter(|call| call.number == number).find(again) {
+                Some(call) => {
                     if let Some(pass) = self.step.passes.get_mut(number) {
-                        keep_pair(&mut pass.repeated_pairs, asked.pair);
+                        keep_pair(&mut pass.repeated_pairs, call.pair);
                     }
-                    place += asked.count;
-                    surplus -= asked.count;
+                    place += call.count;
+                    surplus -= call.count;
                 }
                 None => (place, surplus) = (place + 1, surplus - 1),
             }
@@ -288,20 +287,19 @@ impl<'a> Inspector<'a> {
             if self.step.calls.len() >= MAX_SHOWN_CALLS || self.step.calls.iter().any(is_shown) {
                 continue;
             }
-            let Some(asked) = self.reference_calls.iter().find(|asked| asked.number == pass && asked.pair == pair)
-            else {
+            let Some(call) = self.reference_calls.iter().find(|call| call.number == pass && call.pair == pair) else {
                 continue;
             };
             let logged = if self.step.passes[pass].missing_pairs.contains(&pair) {
                 CallLog::Nothing
             } else {
-                find_log_by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
+                find_log_by_order(self.log, self.step.expected_polynomials, call.first, call.count)
             };
-            let (pass, polynomials) = (asked.pass, asked.count);
+            let (pass, polynomials) = (call.pass, call.count);
             self.step.calls.push(InspectedCall {
                 pass,
                 pair,
-                study: Study::for_motion(&asked.motion),
+                study: Study::for_motion(&call.motion),
                 polynomials,
                 logged,
             });
