@@ -12,8 +12,8 @@
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// The way in which a run ended. Except for [`RunEnd::Exited`] and [`RunEnd::Signalled`], each is a decision of the
-/// sandbox.
+/// The result of a run: how the program ended, or, if the sandbox stopped it, which limit it exceeded. Except for
+/// [`RunEnd::Exited`] and [`RunEnd::Signalled`], each is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RunEnd {
     /// The program exited by itself with this exit code.

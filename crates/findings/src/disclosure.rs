@@ -1,5 +1,4 @@
-//! The part of a judged trace that a report may show, as values. [`Hints`](super::Hints) reduce it to what a reader may
-//! see.
+//! The content of a judged trace that reports use. [`Hints`](super::Hints) remove what the reader may not see.
 use super::{
     Book, Damage, FindingCounts, Outcome, Residuals, Rules, Ruling,
     finding::{Finding, FindingKind, FindingPlace},

@@ -250,7 +250,7 @@ pub struct SkippedEntry {
 /// The result of building a submission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {
-    /// The way in which the build ended.
+    /// The result of the build.
     pub end: BuildEnd,
     /// The compiler's output, cut if it is long. It is raw text, which reports must escape.
     pub output: String,

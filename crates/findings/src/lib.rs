@@ -1,5 +1,5 @@
-//! The judgement of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
-//! results of scenes and grades.
+//! Data types for the judgement of a submission: findings, the outcome of judging a trace by both rule books,
+//! explanations, results of scenes and grades.
 //!
 //! Every fact has one type, which all crates use: `judge` and `mistakes` create the values, `grading` stores them,
 //! `report` and `server` read them. Serialized values are read back bit for bit. The data of an assignment (known

@@ -14,7 +14,7 @@ pub struct SceneFeature {
 }
 
 fosssim_num::closed_set! {
-    /// The way in which a program fails.
+    /// A kind of failure of a program.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FailureKind {
         /// The program is killed by a signal.
@@ -35,7 +35,7 @@ fosssim_num::closed_set! {
 /// The common features of the scenes in which the program fails.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
-    /// The way in which the program fails in these scenes.
+    /// The kind of failure in these scenes.
     #[serde(rename = "failing")]
     pub failure: FailureKind,
     /// The features that all failing scenes have in common, the most general first. The scenes do not show which of

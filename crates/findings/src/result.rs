@@ -1,4 +1,4 @@
-//! Results of scenes, as values. `report::words` describes them in sentences, and `grading::score` computes points.
+//! Data types for the results of scenes. `report::words` describes them, and `grading::score` computes points.
 use super::{
     cause::Cause,
     disclosure::Disclosure,
@@ -26,7 +26,7 @@ pub struct SceneResult {
     pub verdict: Verdict,
     /// The reason for the verdict, as a value.
     pub reason: Reason,
-    /// The way in which the program ended, if it was run.
+    /// The result of the run; `None` if the program was not run.
     pub ended: Option<RunEnd>,
     /// The reason why the two rule books judge the trace differently; `None` if they agree.
     #[serde(rename = "differs")]
@@ -304,7 +304,7 @@ pub enum SavedTrace {
     },
 }
 
-/// The way in which a build ended.
+/// The result of a build.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BuildEnd {
     /// The build produced the program.

@@ -37,11 +37,11 @@ pub struct SpeedGrade {
     /// The points that the submission gets for speed. `None` if the grader could not measure it; that never gives zero
     /// points.
     pub points: Option<f64>,
-    /// The way in which the points were computed, or the reason why there are none.
+    /// The calculation of the points, or the reason why there are none.
     pub source: SpeedSource,
 }
 
-/// The way in which points for speed were computed, or the reason why there are none.
+/// The calculation of points for speed, or the reason why there are none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SpeedSource {
     /// Some scenes of the group are not accepted, so there are no points for speed.

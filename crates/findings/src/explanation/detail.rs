@@ -1,4 +1,4 @@
-//! The exact form of a fault, as values. The exact form may reveal a right formula.
+//! Data types for the exact form of a fault. The exact form may reveal a right formula.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};

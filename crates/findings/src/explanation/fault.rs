@@ -26,14 +26,14 @@ pub enum StageFault {
     Decisions {
         /// The kind of the affected pairs, if all have the same kind.
         kind: Option<PairKind>,
-        /// The way in which the decisions are wrong.
+        /// The error in the decisions, such as missed contacts.
         wrong: WrongDecisions,
     },
     /// Among the bodies that overlap at the end of a step, the wrong ones are treated as colliding.
     Overlaps {
         /// The kind of the affected pairs, if all have the same kind.
         kind: Option<PairKind>,
-        /// The way in which the decisions are wrong.
+        /// The error in the decisions, such as missed contacts.
         wrong: WrongDecisions,
     },
     /// A state changes wrongly. The trace logs only states.
@@ -70,7 +70,7 @@ pub enum StageFault {
     HandedOver {
         /// The quantity that is wrong; `None` if both positions and velocities are.
         quantity: Option<Quantity>,
-        /// The way in which the loop ended when the values are wrong; `None` if they are wrong in any case.
+        /// The end of the loop after which the values are wrong; `None` if they are wrong after any end.
         when: Option<LoopEnd>,
         /// Whether wrong responses could also cause the fault.
         or_response: bool,
@@ -167,7 +167,7 @@ fosssim_num::closed_set! {
 }
 
 fosssim_num::closed_set! {
-    /// The way in which decisions about contacts are wrong.
+    /// An error in decisions about contacts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongDecisions {
         /// Contacts that exist are missed.
@@ -239,7 +239,7 @@ pub enum Quantity {
 }
 
 fosssim_num::closed_set! {
-    /// The way in which the number of rounds is wrong.
+    /// An error in the number of rounds.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongNumber {
         /// The loop makes too few rounds.
@@ -251,7 +251,7 @@ fosssim_num::closed_set! {
     }
 }
 
-/// The way in which the geometric part runs at the wrong time.
+/// An error in when the geometric part runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
     /// The geometric part does not run, although the rounds have used up their maximum number.
@@ -277,7 +277,7 @@ fosssim_num::closed_set! {
     }
 }
 
-/// The way in which the impulse rounds end.
+/// The reason why the impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
     /// The loop has made its maximum number of rounds.

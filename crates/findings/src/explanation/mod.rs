@@ -1,4 +1,4 @@
-//! Explanations of wrong traces, as values. Reports turn them into sentences.
+//! Data types for explanations of wrong traces. Reports turn them into sentences.
 mod area;
 pub mod detail;
 pub mod example;
