@@ -28,7 +28,7 @@ use std::{
 #[cfg(target_os = "linux")]
 const MAX_OUTPUT_BYTES: usize = 4096;
 
-/// The way in which a program ended, its measurements, and its output.
+/// The result of a run of a program, its measurements, and its output.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
     ended: RunEnd,
@@ -72,7 +72,7 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
 pub struct JudgedRun<'a> {
     /// The scene that was run.
     pub task: &'a SceneTask,
-    /// The way in which the program ended, its measurements, and its output.
+    /// The run of the program: its result, its measurements, and its output.
     pub program: &'a ProgramRun,
     /// The outcome of judging the trace.
     pub outcome: &'a Outcome,

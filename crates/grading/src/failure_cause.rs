@@ -27,7 +27,7 @@ pub type Features = BTreeSet<FeatureIndex>;
 pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// The way in which the program failed on the scene; `None` if it did not fail.
+    /// The kind of failure on the scene; `None` if the program did not fail.
     pub failure: Option<FailureKind>,
     /// The number of steps whose records are complete.
     pub steps: u32,

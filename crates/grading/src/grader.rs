@@ -107,9 +107,9 @@ impl Grader<'_> {
 
     /// Returns texts for everything that a result depends on, except for the program and the scene.
     fn conditions(&self) -> Vec<String> {
-        let walls = self.backend.layers().iter().filter(|report| report.active);
+        let active = self.backend.layers().iter().filter(|report| report.active);
         vec![
-            walls.map(|report| report.layer.name()).collect::<Vec<_>>().join(","),
+            active.map(|report| report.layer.name()).collect::<Vec<_>>().join(","),
             self.effective_rules().name().to_owned(),
             self.plan.command.join("\u{1f}"),
             format!("{:?}", self.plan.limits),
@@ -302,14 +302,14 @@ impl<'a> SubmissionGrading<'a> {
     /// Creates the grading of a submission that has no results yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
         let missing = grader.plan.scenes().count();
-        let (done, told) = (vec![None; missing], vec![None; missing]);
+        let (done, reported) = (vec![None; missing], vec![None; missing]);
         Self {
             grader,
             shared,
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            progress: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported: told, missing }),
+            progress: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported, missing }),
         }
     }
 
@@ -390,11 +390,11 @@ impl<'a> SubmissionGrading<'a> {
         trace: Option<&FilePlace>,
         tell: &mut dyn FnMut(SceneEvent),
     ) -> SceneResult {
-        let mut told = Instant::now();
+        let mut last_report = Instant::now();
         let mut on_step = |step| {
             // At most ten steps are reported per second, because more would only fill the channel.
-            if told.elapsed() > Duration::from_millis(100) {
-                told = Instant::now();
+            if last_report.elapsed() > Duration::from_millis(100) {
+                last_report = Instant::now();
                 tell(SceneEvent::Step(step));
             }
         };

@@ -73,7 +73,7 @@ pub struct WrongScene<'a> {
     pub task: &'a SceneTask,
     /// The explanations of the trace that the program wrote.
     pub explanations: &'a [Explanation],
-    /// The way in which the program ended.
+    /// The result of the run.
     pub ended: &'a RunEnd,
 }
 

@@ -168,11 +168,11 @@ fn remove_unknown(
 ) {
     for TableKey(name, _, required) in keys {
         // A missing key may be a misspelled one, which has already been reported.
-        let meant = |key: &Spanned<Cow<'_, str>>| {
+        let is_this_key = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name
                 || find_closest(key.get_ref(), keys.iter().map(|TableKey(name, ..)| *name)) == Some(name)
         };
-        if *required && !table.keys().any(meant) {
+        if *required && !table.keys().any(is_this_key) {
             problems.push((at.clone(), format!("{place} has no `{name}`")));
         }
     }

@@ -5,7 +5,7 @@
 pub struct Axis {
     /// The name of the property.
     pub name: &'static str,
-    /// The possible values, as words for reports.
+    /// The names of the possible values, for reports.
     pub values: &'static [&'static str],
 }
 

@@ -77,16 +77,16 @@ impl SubmissionGrading<'_> {
             grade.located_failure = find_failing_features(&grade, || self.shared.features(plan));
         }
         reconcile_explanations(&mut grade);
-        if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
+        if let (Some(show), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
             // The grade must not be lost if this part panics.
-            grade.smallest = catch_panic(|| self.find_smallest(&grade, staged, describe)).unwrap_or_default();
+            grade.smallest = catch_panic(|| self.find_smallest(&grade, staged, show)).unwrap_or_default();
         }
         grade
     }
 
     /// Finds the smallest scene for each cause. If scenes that students see show the cause, the smallest scene is made
     /// from them, so that it reveals nothing about others.
-    fn find_smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
+    fn find_smallest(&self, grade: &Grade, staged: &StagedProgram, show: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
         let plan = self.grader.plan;
         let is_visible = |name: &str| {
             let groups = grade.groups.iter().filter(|group| group.visibility == Visibility::Visible);
@@ -113,8 +113,8 @@ impl SubmissionGrading<'_> {
                 tasks.retain(|task| is_visible(&task.name));
             }
             let small = shrinker.shrink_cause((reason, tasks)).ok().flatten();
-            let told = small.map(|small| tell(&small));
-            found.extend(told.filter(|told| !is_repetition(told, &found)));
+            let described = small.map(|small| show(&small));
+            found.extend(described.filter(|described| !is_repetition(described, &found)));
         }
         found
     }
