@@ -22,7 +22,7 @@ pub enum ArchiveKind {
     TarGz,
 }
 
-/// The endings of archives that can be unpacked, as words for messages.
+/// A list, for messages, of the file name endings of archives that can be unpacked.
 pub const KNOWN_EXTENSIONS: &str = ".zip, .tar.gz, .tar";
 
 /// The number of bytes from which the kind of a file is recognized.

@@ -266,10 +266,10 @@ impl Walk<'_> {
             }
             if kind == tar::EntryType::XHeader {
                 let header = read_header(&mut entry)?;
-                for said in tar::PaxExtensions::new(&header) {
-                    let said = said.map_err(describe_damage)?;
-                    match said.key_bytes() {
-                        b"path" => long_name = Some(said.value_bytes().to_vec()),
+                for extension in tar::PaxExtensions::new(&header) {
+                    let extension = extension.map_err(describe_damage)?;
+                    match extension.key_bytes() {
+                        b"path" => long_name = Some(extension.value_bytes().to_vec()),
                         // Only files that are larger than allowed have this field.
                         b"size" => return Err(ArchiveError::Bytes(self.limits.bytes)),
                         _ => {}
