@@ -1,8 +1,8 @@
 //! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and the first
 //! difference between trace and reference.
 //!
-//! The crate uses neither processes nor reports: it takes a scene and a reader, and returns findings as values. The
-//! rules are those of `oracle-behavior.md`, sections 4 to 6.
+//! The crate uses neither processes nor reports: it takes a scene and a reader, and returns findings. The rules
+//! are those of `oracle-behavior.md`, sections 4 to 6.
 //!
 //! ```
 //! use fosssim_judge::{Book, Ruling, replay};

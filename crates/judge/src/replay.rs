@@ -119,7 +119,8 @@ struct StepRules<'a> {
     fair: Option<Context<'a>>,
 }
 
-/// The sequential part: the reader, the start state of the next step, and the outcome so far.
+/// The state of a replay that its steps change one after another: the reader, the end state of the last step, and the
+/// outcome so far.
 struct Replay<'a, R> {
     scene: &'a Scene,
     reader: LenientReader<R>,

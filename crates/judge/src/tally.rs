@@ -144,21 +144,21 @@ impl<'a> Tally<'a> {
 
     /// Compares the trace's next polynomial with the expected bytes `own`.
     #[inline]
-    fn measure_likeness(&self, own: &[u8]) -> Likeness {
+    fn compare_quickly(&self, own: &[u8]) -> QuickComparison {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
         if index >= log.len() {
-            return Likeness::Undecided;
+            return QuickComparison::Undecided;
         }
         let actual = log.get(index);
         match (actual.len(), own.len()) {
-            (0, 0) => Likeness::Same,
-            (1, 8) => measure_likeness::<1>(own, actual),
-            (2, 16) => measure_likeness::<2>(own, actual),
-            (3, 24) => measure_likeness::<3>(own, actual),
-            (4, 32) => measure_likeness::<4>(own, actual),
-            (5, 40) => measure_likeness::<5>(own, actual),
-            (6, 48) => measure_likeness::<6>(own, actual),
-            _ => Likeness::Undecided,
+            (0, 0) => QuickComparison::Same,
+            (1, 8) => compare_quickly::<1>(own, actual),
+            (2, 16) => compare_quickly::<2>(own, actual),
+            (3, 24) => compare_quickly::<3>(own, actual),
+            (4, 32) => compare_quickly::<4>(own, actual),
+            (5, 40) => compare_quickly::<5>(own, actual),
+            (6, 48) => compare_quickly::<6>(own, actual),
+            _ => QuickComparison::Undecided,
         }
     }
 
@@ -304,17 +304,17 @@ impl Observer for Tally<'_> {
         let is_small = own.max_modulus() < SAFE_SUM / MAX_COEFFICIENTS as f64;
         for (number, bytes) in own.iter().enumerate() {
             let index = self.polynomials;
-            match self.measure_likeness(bytes) {
-                Likeness::Same if is_small => {
+            match self.compare_quickly(bytes) {
+                QuickComparison::Same if is_small => {
                     self.polynomials += 1;
                     continue;
                 }
-                Likeness::Factor => {
+                QuickComparison::Factor => {
                     self.polynomials += 1;
                     self.is_identical = false;
                     continue;
                 }
-                Likeness::Same | Likeness::Undecided => {}
+                QuickComparison::Same | QuickComparison::Undecided => {}
             }
             let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
             places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
@@ -386,7 +386,7 @@ fn is_accepted(own: &[f64], actual: &[f64]) -> bool {
 
 /// The result of quickly comparing a polynomial of the trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Likeness {
+enum QuickComparison {
     /// The polynomial is identical to the reference's.
     Same,
     /// The polynomial differs by a factor, and [`is_accepted`] accepts it.
@@ -398,15 +398,15 @@ enum Likeness {
 /// Compares both polynomials with one division for all coefficients. Its rounding differs from the original's by less
 /// than a hundredth of the bound.
 #[inline]
-fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
+fn compare_quickly<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> QuickComparison {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())
     else {
-        return Likeness::Undecided;
+        return QuickComparison::Undecided;
     };
     let own = own.map(f64::from_le_bytes);
     let difference = own.iter().zip(actual).fold(0, |all, (own, actual)| all | own.to_bits() ^ actual.to_bits());
     if difference == 0 {
-        return Likeness::Same;
+        return QuickComparison::Same;
     }
     let (mut sum_own, mut sum_actual) = (0.0, 0.0);
     for (own, actual) in own.iter().zip(actual) {
@@ -419,7 +419,7 @@ fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness
         let rescaled = own * factor;
         all &= ((actual - rescaled).abs() <= 0.9 * PARITY_COEFFICIENT_DIFFERENCE) & (rescaled.abs() <= 1e3);
     }
-    if all { Likeness::Factor } else { Likeness::Undecided }
+    if all { QuickComparison::Factor } else { QuickComparison::Undecided }
 }
 
 /// Returns the sum of absolute values, left to right from zero.
@@ -472,18 +472,18 @@ mod tests {
             let (factor, noise) = ([0.5, 1.0, 1.0 / 3.0, 7.0][round % 4], [0.0, 1e-12, 1e-10, 2e-10][round / 4 % 4]);
             let actual = own.map(|own| factor * own + noise * (next() - 0.5));
             let bytes: Vec<u8> = own.iter().flat_map(|own| own.to_le_bytes()).collect();
-            match measure_likeness::<3>(&bytes, &actual) {
-                Likeness::Same => assert!(has_same_bits(&own, &actual)),
-                Likeness::Factor => {
+            match compare_quickly::<3>(&bytes, &actual) {
+                QuickComparison::Same => assert!(has_same_bits(&own, &actual)),
+                QuickComparison::Factor => {
                     assert!(is_accepted(&own, &actual) && !has_same_bits(&own, &actual), "{own:?} {actual:?}");
                     clear += 1;
                 }
-                Likeness::Undecided => assert!(!has_same_bits(&own, &actual)),
+                QuickComparison::Undecided => assert!(!has_same_bits(&own, &actual)),
             }
         }
         assert!(clear > 5000, "{clear}");
         let nan = [f64::NAN, 1.0, 1.0];
-        assert_eq!(measure_likeness::<3>(&[0; 24], &nan), Likeness::Undecided);
+        assert_eq!(compare_quickly::<3>(&[0; 24], &nan), QuickComparison::Undecided);
     }
 
     #[test]

@@ -104,7 +104,7 @@ impl BoundedPairMotion {
         let places = |particle| [vector_at(q_start, particle), vector_at(q_end, particle)];
         let size = |particles: &[usize]| {
             let all = particles.iter().flat_map(|&particle| places(particle));
-            all.fold(0.0_f64, |most, place| most.max(extent(place)))
+            all.fold(0.0_f64, |most, place| most.max(l1_norm(place)))
         };
         let way = |particle, size| {
             let [start, end] = places(particle);
@@ -127,7 +127,7 @@ impl BoundedPairMotion {
             }
             PairKind::ParticleHalfPlane => {
                 let half_plane = &scene.half_planes[second];
-                let size = size(&[first]).max(extent(half_plane.point));
+                let size = size(&[first]).max(l1_norm(half_plane.point));
                 Self::HalfPlane(way(first, size), radius(first), half_plane.point, half_plane.normal)
             }
         }
@@ -275,12 +275,12 @@ fn with_component_errors(v: Vec2, size: f64) -> BoundedVector {
 
 /// Returns a vector of the scene whose components have the rounding errors of rotated axes.
 fn rotate_axes(v: Vec2) -> BoundedVector {
-    with_component_errors(v, extent(v))
+    with_component_errors(v, l1_norm(v))
 }
 
 /// Returns |x| + |y|, which bounds the components of a vector in rotated axes. It is at most √2 times the vector's
 /// length.
-pub(super) fn extent(v: Vec2) -> f64 {
+pub(super) fn l1_norm(v: Vec2) -> f64 {
     v.x.abs() + v.y.abs()
 }
 

@@ -112,9 +112,9 @@ impl JudgementBuilder {
             // any factor.
             return pending.finding(self.factors_of(kind).range().filter(|range| is_constant(*range))?);
         }
-        let mut told = self.factors[kind][number];
-        told.add_ones(self.identical_polynomials[kind][number]);
-        let usual_range = told.usual_range().or_else(|| self.claimed_factors[kind][number].usual_range());
+        let mut factors = self.factors[kind][number];
+        factors.add_ones(self.identical_polynomials[kind][number]);
+        let usual_range = factors.usual_range().or_else(|| self.claimed_factors[kind][number].usual_range());
         pending.finding(usual_range.unwrap_or([1.0; 2]))
     }
 
@@ -195,17 +195,17 @@ impl JudgementBuilder {
         self.count_wrong_pending();
         let factors = self.factors.values().flatten().filter_map(Factors::range);
         let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
-        let mut said = self.judgement;
-        said.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
-        said.findings.conclude();
-        said.verdict = if said.refusal.is_some() || said.findings.counts.total() > 0 {
+        let mut judgement = self.judgement;
+        judgement.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
+        judgement.findings.conclude();
+        judgement.verdict = if judgement.refusal.is_some() || judgement.findings.counts.total() > 0 {
             FairVerdict::Rejected
-        } else if outcome.steps_judged == outcome.steps && said.first_unjudged_step.is_none() {
+        } else if outcome.steps_judged == outcome.steps && judgement.first_unjudged_step.is_none() {
             FairVerdict::Accepted
         } else {
             FairVerdict::None
         };
-        said
+        judgement
     }
 }
 

@@ -1,5 +1,5 @@
 //! Finds the states with ordinary values.
-use super::formulas::extent;
+use super::formulas::l1_norm;
 use fosssim_model::{scene::Scene, sim::State};
 use fosssim_num::{
     tolerances::FAIR_REACH_FACTOR,
@@ -20,10 +20,10 @@ pub(crate) struct OrdinaryRange {
 impl OrdinaryRange {
     /// Returns the range around the scene's initial state, which contains most states.
     pub fn for_scene(scene: &Scene) -> Self {
-        let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
-        let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
+        let radii = scene.particles.iter().map(|particle| l1_norm(particle.position) + particle.radius);
+        let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| l1_norm(half_plane.point)));
         let position = Some(sizes.fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
-        let fastest = scene.particles.iter().map(|particle| extent(particle.velocity)).fold(0.0, f64::max);
+        let fastest = scene.particles.iter().map(|particle| l1_norm(particle.velocity)).fold(0.0, f64::max);
         let velocity = fastest.max(position / scene.time_step);
         let places = scene.particles.iter().map(|particle| particle.position);
         Self { position, velocity, spread: spread(places) }
@@ -39,8 +39,8 @@ impl OrdinaryRange {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH_FACTOR * most);
         let far = (0..particles).find(|&particle| {
-            is_far(extent(vector_at(&state.positions, particle)), self.position)
-                || is_far(extent(vector_at(&state.velocities, particle)), self.velocity)
+            is_far(l1_norm(vector_at(&state.positions, particle)), self.position)
+                || is_far(l1_norm(vector_at(&state.velocities, particle)), self.velocity)
         });
         far.or_else(|| (spread(positions(state)) * FAIR_REACH_FACTOR < self.spread).then_some(0))
     }
@@ -57,9 +57,9 @@ fn positions(state: &State) -> impl Iterator<Item = Vec2> {
     (0..state.positions.len() / 2).map(|particle| vector_at(&state.positions, particle))
 }
 
-/// Returns the largest [`extent`] of a vector.
+/// Returns the largest [`l1_norm`] of a vector.
 pub(super) fn largest_size(vectors: &[f64]) -> f64 {
-    let all = (0..vectors.len() / 2).map(|index| extent(vector_at(vectors, index)));
+    let all = (0..vectors.len() / 2).map(|index| l1_norm(vector_at(vectors, index)));
     all.fold(0.0, f64::max)
 }
 

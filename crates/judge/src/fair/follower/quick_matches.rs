@@ -2,7 +2,7 @@
 use super::Follower;
 use crate::fair::{
     compare::{MAX_SAFE_SUM, Match, Similarity},
-    formulas::extent,
+    formulas::l1_norm,
 };
 use fosssim_model::{
     scene::Scene,
@@ -67,14 +67,14 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut widen = |place: Vec2| {
-        size = size.max(extent(place));
+        size = size.max(l1_norm(place));
         low = [low[0].min(place.x), low[1].min(place.y)];
         high = [high[0].max(place.x), high[1].max(place.y)];
     };
     for particle in 0..scene.particles.len() {
         let [start, end] = [q_start, q_end].map(|places| vector_at(places, particle));
         [start, end].into_iter().for_each(&mut widen);
-        shift = shift.max(extent(end - start));
+        shift = shift.max(l1_norm(end - start));
     }
     for half_plane in &scene.half_planes {
         widen(half_plane.point);
@@ -83,7 +83,7 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
     let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0_f64, |most, size| most.max(size.abs()));
     let of_particles = largest(&mut scene.particles.iter().map(|particle| particle.radius));
     let radius = of_particles + of_particles.max(largest(&mut scene.edges.iter().map(|edge| edge.radius)));
-    let normal = largest(&mut scene.half_planes.iter().map(|half_plane| extent(half_plane.normal)));
+    let normal = largest(&mut scene.half_planes.iter().map(|half_plane| l1_norm(half_plane.normal)));
     let both = |value: f64, bound: f64| {
         let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         Plane { x: number, y: number }
