@@ -1,11 +1,11 @@
 //! Finds the faults of a contest's search for nearby pairs.
 //!
 //! The search is the only code that a contest's student writes, so the force and the integrator are never named. The
-//! fair rules find how many times a step applied the force of each nearby pair. The trait of [`traits`] that best
+//! fair rules find how many times a step applied the force of each nearby pair. The [trait](trait_table) that best
 //! distinguishes wrong pairs from right ones shows where the search fails. All traces of a program are counted
 //! together.
 mod geometry;
-mod traits;
+mod trait_table;
 
 use super::{
     Detail, Explanation, PairCounts, WrongPairs,
@@ -20,7 +20,7 @@ use fosssim_model::{
 use fosssim_student::Area;
 use geometry::{PlacedPair, StepGeometry};
 use std::collections::BTreeSet;
-use traits::TraitVariant;
+use trait_table::{TraitVariant, variants};
 
 /// The maximum number of examined wrong steps. Four times as many right steps are examined.
 const MAX_STEPS: usize = 24;
@@ -56,7 +56,7 @@ pub struct PairTrait {
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
-    let variants: Vec<TraitVariant> = traits::variants().collect();
+    let variants: Vec<TraitVariant> = variants().collect();
     let of_kind = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(of_kind).into() };
     let mut seen: BTreeSet<(Pair, usize)> = BTreeSet::new();
@@ -93,7 +93,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
-    let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
+    let counts = variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
         // The probability that this many randomly chosen pairs all have the trait. Pairs of a scene resemble each
         // other, so the larger group counts only as much as the smaller one.

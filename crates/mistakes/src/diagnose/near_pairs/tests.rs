@@ -1,5 +1,5 @@
 //! Searches with artificial mistakes, in the scenes of the contest's suite.
-use super::{pair_traits, traits};
+use super::{pair_traits, variants};
 use crate::diagnose::{Explanation, ExplanationTopic, PairCounts, WrongPairs, explain, explain_together};
 use fosssim_model::{
     scene::{Collision, Scene, original},
@@ -86,7 +86,7 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
 #[test]
 fn a_property_without_right_pairs_is_not_reported() {
     let traits_of = |[wrong, right, with]: [u64; 3]| {
-        let traits = vec![[wrong, with, 0]; traits::variants().count()];
+        let traits = vec![[wrong, with, 0]; variants().count()];
         pair_traits(&PairCounts { kind: PairKind::ParticleParticle, counts_by_times: [wrong, right, 0], traits }, 0)
             .len()
     };
@@ -96,7 +96,7 @@ fn a_property_without_right_pairs_is_not_reported() {
 
 #[test]
 fn no_trait_gives_a_formula_away() {
-    for one in traits::variants() {
+    for one in variants() {
         assert_eq!(find_formula(&one.describe()), None, "{}", one.describe());
     }
 }

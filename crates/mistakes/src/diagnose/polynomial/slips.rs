@@ -9,8 +9,8 @@ use fosssim_student::assignments::t2m2::{
     ingredients::{Ingredient, ingredients},
 };
 
-/// A quantity that is tried instead of a letter.
-enum SlipTrial<'a> {
+/// A quantity that replaces a letter in a formula.
+enum LetterReplacement<'a> {
     /// The letter is multiplied by a factor.
     Scaled(f64),
     /// The letter with this index is used instead.
@@ -21,7 +21,7 @@ enum SlipTrial<'a> {
     One,
 }
 
-impl SlipTrial<'_> {
+impl LetterReplacement<'_> {
     fn value(&self, slot: usize, values: &[BoundedValue], inputs: &Inputs) -> BoundedValue {
         match self {
             Self::Scaled(factor) => *factor * values[slot],
@@ -75,12 +75,12 @@ fn collect_formula_slips(study: &PolynomialStudy, formula: &Formula, reading: Re
         if uses == 0 {
             continue;
         }
-        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(SlipTrial::Scaled);
-        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(SlipTrial::Letter);
+        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(LetterReplacement::Scaled);
+        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(LetterReplacement::Letter);
         let dots = pool.iter().enumerate().flat_map(|(index, one)| {
-            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| SlipTrial::Dot(one, two, sign)))
+            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| LetterReplacement::Dot(one, two, sign)))
         });
-        for trial in scaled.chain(letters).chain(dots).chain([SlipTrial::One]) {
+        for trial in scaled.chain(letters).chain(dots).chain([LetterReplacement::One]) {
             let counted = study.count_predicted(|case| {
                 let mut values = formula.letter_values(&case.inputs);
                 values[slot] = trial.value(slot, &values, &case.inputs);

@@ -59,7 +59,7 @@ pub const CLEAR_TOLERANCE: Tolerance =
     Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The tolerance for a step whose start and end states were rounded to single precision.
-pub const SINGLE_PRECISION: Tolerance =
+pub const SINGLE_PRECISION_TOLERANCE: Tolerance =
     Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
 
 /// The numbers of one record.
@@ -91,9 +91,9 @@ impl LoggedNumbers {
 /// The records of one step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepRecords {
-    /// The mid record, if the scene has one.
+    /// The numbers of the mid record, if the scene has one.
     pub mid: Option<LoggedNumbers>,
-    /// The end record.
+    /// The numbers of the end record.
     pub end: LoggedNumbers,
 }
 

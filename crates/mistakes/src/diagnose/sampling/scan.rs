@@ -2,8 +2,8 @@
 use super::{
     capture::Capture,
     compare::{
-        LoggedNumbers, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, find_first_difference,
-        polynomial_matches,
+        LoggedNumbers, ROUND_OFF, SINGLE_PRECISION_TOLERANCE, StepDifference, StepRecords, Tolerance,
+        find_first_difference, polynomial_matches,
     },
     reference::Reference,
     source::{Outline, StepFrames},
@@ -216,7 +216,8 @@ impl Scanner {
                 }
                 begins
             }),
-            has_single_precision: is_single && find_first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
+            has_single_precision: is_single
+                && find_first_difference(expected, actual, &SINGLE_PRECISION_TOLERANCE).is_none(),
             keeps_forces: last.is_some_and(|last| {
                 let changes = before.state.velocities.iter().zip(&expected.end.state.velocities).zip(last);
                 let mut kept = changes.zip(&actual.end.state.velocities);

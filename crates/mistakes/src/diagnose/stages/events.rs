@@ -93,13 +93,13 @@ impl Observer for StepEvents<'_> {
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.keep_other_form(detection);
-        let heard = &mut self.events;
+        let events = &mut self.events;
         if let Decision::Hit { time, normal } = detection.decision {
-            let (pass, place) = (heard.passes.len().saturating_sub(1), heard.detections.len());
-            heard.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
+            let (pass, place) = (events.passes.len().saturating_sub(1), events.detections.len());
+            events.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
         }
-        heard.detections.push((detection.pair, heard.polynomial_count));
-        heard.polynomial_count += detection.polynomials.len();
+        events.detections.push((detection.pair, events.polynomial_count));
+        events.polynomial_count += detection.polynomials.len();
     }
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {

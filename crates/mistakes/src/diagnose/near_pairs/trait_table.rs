@@ -62,7 +62,7 @@ impl TraitVariant {
 
 /// Returns all rows of the table, each with all its axes and numbers.
 pub(super) fn variants() -> impl Iterator<Item = TraitVariant> {
-    TRAITS.iter().flat_map(|row| {
+    TRAIT_TABLE.iter().flat_map(|row| {
         row.axes.iter().flat_map(move |&axis| row.numbers.iter().map(move |&n| TraitVariant { row, axis, n }))
     })
 }
@@ -80,16 +80,16 @@ const TRAIT_SHARES: &[f64] = &[0.9, 0.75, 0.5, 0.25, 0.1];
 const TRAIT_STEPS: &[f64] = &[16.0, 8.0, 4.0, 2.0, 1.0];
 const TRAIT_LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
 
-macro_rules! traits {
+macro_rules! trait_table {
     ($($axes:ident $numbers:ident $what:literal $exact:literal $holds:expr;)*) => {
         /// The table of traits. If rows distinguish pairs equally well, the first ones are reported.
-        const TRAITS: &[TraitRow] = &[$(TraitRow {
+        const TRAIT_TABLE: &[TraitRow] = &[$(TraitRow {
             description: $what, exact_condition: $exact, axes: $axes, numbers: $numbers, holds: $holds,
         },)*];
     };
 }
 
-traits! {
+trait_table! {
     NO_AXIS NO_NUMBER "the particle's center is behind the half-plane" "(x - p) . n is negative"
         |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.center() - plane.point).dot(&plane.normal) < 0.0);
     NO_AXIS NO_NUMBER "the particle's center is in front of the half-plane" "(x - p) . n is not negative"
