@@ -250,10 +250,10 @@ impl<'t> DocumentReader<'t, '_> {
             return;
         }
         // The search for a similar name takes time, so only displayed problems get a suggestion.
-        let meant = &mut self.document.intended_names;
+        let intended_names = &mut self.document.intended_names;
         self.report.add_error(|| {
             let similar = grammar::similar_element(name);
-            meant.extend(similar);
+            intended_names.extend(similar);
             Problem::from_element(name, span, format!("unknown element `{}`", quote(name))).with_help(
                 similar.map_or_else(
                     || "the original ignores it silently".to_owned(),

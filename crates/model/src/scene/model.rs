@@ -60,7 +60,7 @@ pub enum Collision {
         stiffness: f64,
         /// The thickness of the layer (`thickness`), a length.
         thickness: f64,
-        /// The way to find the pairs that repel each other.
+        /// The method that finds the pairs that repel each other.
         detection: CollisionDetection,
     },
     /// One detection pass in continuous time responds to each impact.
@@ -114,8 +114,8 @@ impl Collision {
     }
 }
 
-/// The way in which a penalty force finds its pairs (`collisiondetection`), which determines the order of their sum
-/// (simulation.md 3). Other collision handling always checks all pairs.
+/// The method with which a penalty force finds its pairs (`collisiondetection`), which determines the order of their
+/// sum (simulation.md 3). Other collision handling always checks all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionDetection {
     /// All pairs are summed in the order of a detection pass (`all-pairs`, the default).

@@ -9,7 +9,7 @@ use std::ops::Range;
 /// bytes may be kept for a caller that writes the lists of several steps together.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
-    /// The bytes of the list are those from `begin` to `used`. Earlier lists may precede them, and free room follows.
+    /// The list occupies `bytes[start..used_bytes]`. Earlier lists may precede it, and free space follows.
     bytes: Vec<u8>,
     start: usize,
     used_bytes: usize,

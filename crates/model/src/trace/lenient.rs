@@ -240,16 +240,16 @@ impl<R: Read> LenientReader<R> {
         self.source.ensure(1) > 0
     }
 
-    fn error(&self, offset: u64, what: Malformation) -> TraceError {
-        TraceError::new(self.layout, self.record, offset, what)
+    fn error(&self, offset: u64, malformation: Malformation) -> TraceError {
+        TraceError::new(self.layout, self.record, offset, malformation)
     }
 
-    fn stop(&self, cause: ReadFailure, offset: u64, what: Malformation) -> ReadStop {
+    fn stop(&self, cause: ReadFailure, offset: u64, malformation: Malformation) -> ReadStop {
         match self.source.error() {
             Some(error) if matches!(cause, ReadFailure::State | ReadFailure::Impulses) => {
                 ReadStop { cause: ReadFailure::Io, error: self.error(self.source.offset(), error) }
             }
-            _ => ReadStop { cause, error: self.error(offset, what) },
+            _ => ReadStop { cause, error: self.error(offset, malformation) },
         }
     }
 
@@ -264,26 +264,26 @@ impl<R: Read> LenientReader<R> {
     }
 
     /// Records damage at which no reader stops.
-    fn record_malformation(&mut self, offset: u64, what: Malformation) {
+    fn record_malformation(&mut self, offset: u64, malformation: Malformation) {
         if self.notes.len() < MAX_NOTES {
-            self.notes.push(self.error(offset, what));
+            self.notes.push(self.error(offset, malformation));
         }
     }
 
     /// Records damage that the original ignores and the strict reader reports.
-    fn record_damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
+    fn record_damage(&mut self, offset: u64, malformation: Malformation) -> Result<(), ReadStop> {
         if self.is_strict {
-            return Err(self.stop(ReadFailure::State, offset, what));
+            return Err(self.stop(ReadFailure::State, offset, malformation));
         }
-        self.record_malformation(offset, what);
+        self.record_malformation(offset, malformation);
         Ok(())
     }
 
     /// Stops the strict reader at a record whose polynomials take too much memory.
     fn check_memory(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
         if self.is_strict && self.is_full(frame) {
-            let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-            return Err(self.stop(ReadFailure::Limit, offset, what));
+            let malformation = Malformation::FrameTooLarge { limit: self.limit as u64 };
+            return Err(self.stop(ReadFailure::Limit, offset, malformation));
         }
         Ok(())
     }

@@ -38,7 +38,7 @@ pub struct OriginalScene {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{explanation}")]
 pub struct Rejection {
-    /// The way in which the original ends.
+    /// The effect on the original: an error message, a crash or undefined behavior.
     pub kind: RejectionKind,
     /// The bytes on standard error, including escape sequences and the final newline. For [`RejectionKind::Undefined`]
     /// the message is this program's.

@@ -39,12 +39,12 @@ pub(super) fn handle<O: Observer>(
 }
 
 /// Returns the response to an impact (collisions.md 3).
-pub(super) fn respond(setting: &ResponseInput<'_>, impulse: &Impulse) -> Response {
+pub(super) fn respond(input: &ResponseInput<'_>, impulse: &Impulse) -> Response {
     let Impulse { pair, normal, time } = *impulse;
     let (first, second) = (pair.first as usize, pair.second as usize);
     match pair.kind {
-        PairKind::ParticleParticle => particle_particle::response(setting, first, second, normal),
-        PairKind::ParticleEdge => particle_edge::response(setting, first, setting.bodies.edges[second], normal, time),
-        PairKind::ParticleHalfPlane => particle_half_plane::response(setting, first, normal),
+        PairKind::ParticleParticle => particle_particle::response(input, first, second, normal),
+        PairKind::ParticleEdge => particle_edge::response(input, first, input.bodies.edges[second], normal, time),
+        PairKind::ParticleHalfPlane => particle_half_plane::response(input, first, normal),
     }
 }

@@ -60,9 +60,9 @@ pub(super) fn handle<O: Observer>(
         } else {
             // All responses of a round are computed from the positions at its start.
             scratch.round_start.clone_from(&state.positions);
-            let setting = ResponseInput { bodies, law, q_start, q_end: &scratch.round_start };
+            let input = ResponseInput { bodies, law, q_start, q_end: &scratch.round_start };
             for impulse in &scratch.hits {
-                respond(&setting, impulse).apply(&mut state.positions, &mut state.velocities);
+                respond(&input, impulse).apply(&mut state.positions, &mut state.velocities);
                 observer.observe_impulse(impulse);
             }
             round += 1;

@@ -35,8 +35,8 @@ pub(super) fn normal(x: Vec2, d: Vec2, point: Vec2, normal: Vec2, squared: f64, 
 }
 
 /// Returns the response along normal `n`, from the mean velocity of the step.
-pub(super) fn response(setting: &ResponseInput<'_>, i: usize, n: Vec2) -> Response {
-    let ResponseInput { law, q_start, q_end, .. } = *setting;
+pub(super) fn response(input: &ResponseInput<'_>, i: usize, n: Vec2) -> Response {
+    let ResponseInput { law, q_start, q_end, .. } = *input;
     let u = unit(n);
     let speed = law.mean_velocity(q_start, q_end, i).dot(&u);
     let change = Change {
@@ -88,10 +88,10 @@ mod tests {
         scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));
         let bodies = Bodies::new(&scene);
         let (q_start, q_end) = ([0.0, 0.5], [0.0, 0.0]);
-        let setting =
+        let input =
             ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [0.0, -1.0]);
-        response(&setting, 0, Vec2::new(0.0, -0.25)).apply(&mut q, &mut v);
+        response(&input, 0, Vec2::new(0.0, -0.25)).apply(&mut q, &mut v);
         assert_eq!((q, v), ([0.0, 1.0], [0.0, 1.0]));
     }
 

@@ -30,8 +30,8 @@ pub(super) fn normal(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, t: f64) -> Vec2 {
 }
 
 /// Returns the response along normal `n`, from the mean velocities of the step.
-pub(super) fn response(setting: &ResponseInput<'_>, i: usize, j: usize, n: Vec2) -> Response {
-    let ResponseInput { bodies, law, q_start, q_end } = *setting;
+pub(super) fn response(input: &ResponseInput<'_>, i: usize, j: usize, n: Vec2) -> Response {
+    let ResponseInput { bodies, law, q_start, q_end } = *input;
     let v1 = law.mean_velocity(q_start, q_end, i);
     let v2 = law.mean_velocity(q_start, q_end, j);
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
@@ -78,10 +78,10 @@ mod tests {
         let scene =
             scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), particle((1.0, 0.0), (-1.0, 0.0), 2.0, 0.1)]);
         let bodies = Bodies::new(&scene);
-        let setting =
+        let input =
             ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [1.0, 0.0, -1.0, 0.0]);
-        response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
+        response(&input, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
         assert_eq!(v, [-1.0, 0.0, 1.0, 0.0]);
         assert_eq!(q, [-0.5, 0.0, 1.5, 0.0]);
     }
@@ -95,10 +95,10 @@ mod tests {
             fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
         ]);
         let bodies = Bodies::new(&scene);
-        let setting =
+        let input =
             ResponseInput { bodies: &bodies, law: &ResponseConstants::new(0.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [1.0, 0.0, 0.0, 0.0]);
-        response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
+        response(&input, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
         assert_eq!((v, q), ([0.0; 4], [0.0, 0.0, 1.0, 0.0]));
     }
 
@@ -114,14 +114,14 @@ mod tests {
             let q_start = [0.0, 0.0, 1.0, 0.0];
             let v = [v1.0, v1.1, v2.0, v2.1];
             let q_end: [f64; 4] = std::array::from_fn(|k| q_start[k] + 0.5 * v[k]);
-            let setting = ResponseInput {
+            let input = ResponseInput {
                 bodies: &bodies,
                 law: &ResponseConstants::new(1.0, 0.5),
                 q_start: &q_start,
                 q_end: &q_end,
             };
             let (mut q, mut after) = (q_end, v);
-            response(&setting, 0, 1, Vec2::new(n.0, n.1)).apply(&mut q, &mut after);
+            response(&input, 0, 1, Vec2::new(n.0, n.1)).apply(&mut q, &mut after);
             let momentum = |v: &[f64; 4], axis: usize| masses[0] * v[axis] + masses[1] * v[axis + 2];
             let energy =
                 |v: &[f64; 4]| masses[0] * (v[0] * v[0] + v[1] * v[1]) + masses[1] * (v[2] * v[2] + v[3] * v[3]);

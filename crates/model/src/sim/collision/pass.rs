@@ -111,21 +111,21 @@ impl Detector {
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
         let begin = self.counts.work();
         let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
-        let (mut place, mut hits) = (PassCursor::from_first(0), 0);
+        let (mut cursor, mut hits) = (PassCursor::from_first(0), 0);
         if self.has_lanes && !matches!(observer.wanted_pairs(), WantedPairs::Calls) {
-            hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
+            hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut cursor)?;
         }
         let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
-        while place.first < bodies.particle_count() {
-            let first = place.first;
-            for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.object_counts().remaining_row(place)) {
+        while cursor.first < bodies.particle_count() {
+            let first = cursor.first;
+            for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.object_counts().remaining_row(cursor)) {
                 for second in seconds {
                     if kind != PairKind::ParticleEdge || !is_end(bodies.edges[second], first) {
                         self.detect(pair(kind, first, second), &mut context)?;
                     }
                 }
             }
-            place = PassCursor::from_first(first + 1);
+            cursor = PassCursor::from_first(first + 1);
         }
         context.observer.end_pass(pass, context.hits);
         if is_slow {
@@ -145,24 +145,24 @@ impl Detector {
         q_end: &mut [f64],
         observer: &mut O,
         react: &mut impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
-        place: &mut PassCursor,
+        cursor: &mut PassCursor,
     ) -> Result<usize, StepError> {
         let step = self.step;
         let mut is_on = self.blocks.prepare(PassInput { bodies, step, q_start, displacements: &self.displacements });
         let mut hits = 0;
         while is_on {
-            let setting = PassInput { bodies, step, q_start, displacements: &self.displacements };
+            let input = PassInput { bodies, step, q_start, displacements: &self.displacements };
             let bytes = match observer.wanted_pairs() {
                 WantedPairs::Bytes(bytes) => Some(bytes),
                 WantedPairs::Calls | WantedPairs::Nothing => None,
             };
-            let Some(impulse) = self.blocks.find_next_hit(setting, place, &mut self.counts, bytes)? else { break };
+            let Some(impulse) = self.blocks.find_next_hit(input, cursor, &mut self.counts, bytes)? else { break };
             hits += 1;
             observer.observe_hit(impulse.pair);
             if react(observer, &impulse, q_end) == Reaction::Moved {
                 let moved = self.displace(bodies, impulse.pair, q_start, q_end);
-                let setting = PassInput { bodies, step, q_start, displacements: &self.displacements };
-                is_on = self.blocks.refresh(setting, moved);
+                let input = PassInput { bodies, step, q_start, displacements: &self.displacements };
+                is_on = self.blocks.refresh(input, moved);
             }
         }
         Ok(hits)

@@ -44,8 +44,8 @@ type MotionLanes<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
 impl Lists {
     /// Fills all lists. Returns false if an input is too large or NaN.
-    pub fn prepare(&mut self, setting: PassInput<'_>) -> bool {
-        let PassInput { bodies, q_start, displacements, .. } = setting;
+    pub fn prepare(&mut self, input: PassInput<'_>) -> bool {
+        let PassInput { bodies, q_start, displacements, .. } = input;
         // Even an empty list has padding after its end.
         if self.particles[4].is_empty() {
             self.fill_constants(bodies);
@@ -63,8 +63,8 @@ impl Lists {
     }
 
     /// Copies the current displacement of a particle.
-    pub fn refresh(&mut self, setting: PassInput<'_>, particle: usize) -> RefreshResult {
-        let PassInput { bodies, displacements, .. } = setting;
+    pub fn refresh(&mut self, input: PassInput<'_>, particle: usize) -> RefreshResult {
+        let PassInput { bodies, displacements, .. } = input;
         let shift = vector_at(displacements, particle);
         let [_, _, dx, dy, _] = &self.particles;
         if [dx[particle], dy[particle]].map(f64::to_bits) == [shift.x, shift.y].map(f64::to_bits) {

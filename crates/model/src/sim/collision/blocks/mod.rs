@@ -51,15 +51,15 @@ impl Blocks {
     }
 
     /// Prepares a pass. Returns false if pairs have to be computed one by one.
-    pub fn prepare(&mut self, setting: PassInput<'_>) -> bool {
+    pub fn prepare(&mut self, input: PassInput<'_>) -> bool {
         self.group.clear();
-        self.lists.prepare(setting)
+        self.lists.prepare(input)
     }
 
     /// Copies the displacements of `moved`. Returns false if the remaining pairs must be computed one by one.
-    pub fn refresh(&mut self, setting: PassInput<'_>, moved: [usize; 3]) -> bool {
+    pub fn refresh(&mut self, input: PassInput<'_>, moved: [usize; 3]) -> bool {
         // Fixed particles do not move, so all results about them are kept.
-        moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
+        moved.into_iter().all(|particle| match self.lists.refresh(input, particle) {
             RefreshResult::Same => true,
             RefreshResult::Moved { is_end } => {
                 self.group.invalidate(particle, is_end);
@@ -75,15 +75,15 @@ impl Blocks {
     /// Fails with [`StepError::RootSearch`] if a root search would never end.
     pub fn find_next_hit(
         &mut self,
-        setting: PassInput<'_>,
-        place: &mut PassCursor,
+        input: PassInput<'_>,
+        cursor: &mut PassCursor,
         counts: &mut SearchCounts,
         bytes: Option<&mut PolynomialBytes>,
     ) -> Result<Option<Impulse>, StepError> {
         let Self { instructions, steps, lists, group } = self;
-        let pairs = || u64::from(*steps).saturating_mul(setting.bodies.estimate_pair_count() as u64);
+        let pairs = || u64::from(*steps).saturating_mul(input.bodies.estimate_pair_count() as u64);
         let instructions = instructions.get_or_insert_with(|| Instructions::for_pairs(pairs()));
-        instructions.run(HitSearch { lists, group, setting, cursor: place, counts, bytes })
+        instructions.run(HitSearch { lists, group, input, cursor, counts, bytes })
     }
 }
 

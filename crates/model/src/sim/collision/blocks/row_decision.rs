@@ -50,24 +50,24 @@ impl<'a> LoggedRows<'a> {
         counts: &mut SearchCounts,
         decide: impl FnOnce(&mut SearchCounts) -> Result<Option<Impulse>, StepError>,
         pair: Pair,
-        place: &mut PassCursor,
+        cursor: &mut PassCursor,
     ) -> bool {
         let found = decide(counts);
-        self.record_result(found, pair, place)
+        self.record_result(found, pair, cursor)
     }
 
     /// Stores the result of a pair. Returns whether it is a hit, after which the position follows it, or an endless
     /// search, which is not logged.
     #[inline(always)]
-    fn record_result(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
-        if matches!(found, Ok(None)) {
+    fn record_result(&mut self, hit: Result<Option<Impulse>, StepError>, pair: Pair, cursor: &mut PassCursor) -> bool {
+        if matches!(hit, Ok(None)) {
             return false;
         }
-        if found.is_err() {
+        if hit.is_err() {
             self.buffer = &mut [];
         }
-        self.result = found;
-        *place = PassCursor::after_pair(pair.kind, pair.first as usize, pair.second as usize);
+        self.result = hit;
+        *cursor = PassCursor::after_pair(pair.kind, pair.first as usize, pair.second as usize);
         true
     }
 
@@ -123,30 +123,30 @@ fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row:
 /// Applies the certificate to a pair with an edge, and the root finder if the certificate has no answer.
 #[inline(never)]
 pub(super) fn decide_edge(
-    setting: &PassInput<'_>,
+    input: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
     row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
 ) -> Result<Option<Impulse>, StepError> {
-    decide_polynomials(setting, counts, pair, row, [5, 3, 3, 6])
+    decide_polynomials(input, counts, pair, row, [5, 3, 3, 6])
 }
 
 /// Decides a pair without an edge.
 #[inline(never)]
 pub(super) fn decide_two_polynomials(
-    setting: &PassInput<'_>,
+    input: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
     row: &[f64; SHORT_ROW_LENGTH],
 ) -> Result<Option<Impulse>, StepError> {
     let [a, b, c, _, d, e, ..] = *row;
-    decide_polynomials(setting, counts, pair, &[a, b, c, d, e], [3, 2])
+    decide_polynomials(input, counts, pair, &[a, b, c, d, e], [3, 2])
 }
 
 /// Decides polynomials of the given lengths, small leading coefficients included.
 #[inline(always)]
 fn decide_polynomials<const COUNT: usize>(
-    setting: &PassInput<'_>,
+    input: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
     coefficients: &[f64],
@@ -159,11 +159,11 @@ fn decide_polynomials<const COUNT: usize>(
         polynomial.trim();
         begin += length;
     }
-    let time = time_of_impact(RootSearch::OnDemand, counts, setting.step, pair, &polynomials)?;
+    let time = time_of_impact(RootSearch::OnDemand, counts, input.step, pair, &polynomials)?;
     let ImpactTime::Found(time) = time else { return Ok(None) };
     if !(time <= 1.0) {
         return Ok(None);
     }
-    let motion = PairMotion::from_bodies(setting.bodies, pair, setting.q_start, setting.displacements);
+    let motion = PairMotion::from_bodies(input.bodies, pair, input.q_start, input.displacements);
     Ok(motion.normal(time).map(|normal| Impulse { pair, normal, time }))
 }

@@ -21,7 +21,7 @@ use std::ops::Range;
 pub(super) struct HitSearch<'a> {
     pub lists: &'a Lists,
     pub group: &'a mut PairGroup,
-    pub setting: PassInput<'a>,
+    pub input: PassInput<'a>,
     pub cursor: &'a mut PassCursor,
     pub counts: &'a mut SearchCounts,
     pub bytes: Option<&'a mut PolynomialBytes>,
@@ -35,7 +35,7 @@ impl LaneWork for HitSearch<'_> {
 
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) -> Self::Output {
-        let bodies = self.setting.bodies;
+        let bodies = self.input.bodies;
         let particles = bodies.particle_count();
         let mut rows = [0.0; SHORT_ROW_LENGTH * MAX_LANES];
         while self.cursor.first < particles {
@@ -71,14 +71,14 @@ impl HitSearch<'_> {
     #[inline(always)]
     fn process_row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.cursor.first;
-        let [particles, edges, half_planes] = self.setting.bodies.object_counts().remaining_row(*self.cursor);
+        let [particles, edges, half_planes] = self.input.bodies.object_counts().remaining_row(*self.cursor);
         if self.decide_particles(simd, first, (particles, rows), output) {
             return true;
         }
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
-        self.group.ensure_computed(simd, self.lists, self.setting.bodies, first, edges.start);
+        self.group.ensure_computed(simd, self.lists, self.input.bodies, first, edges.start);
         self.decide_edges(simd, first, edges, output) || self.decide_half_planes(simd, first, half_planes, output)
     }
 
@@ -104,7 +104,7 @@ impl HitSearch<'_> {
             let Some(row) = self.group.edges[(edge * width + lane) * EDGE_ROW_LENGTH..].first_chunk() else {
                 return false;
             };
-            let (pair, with) = (pair(PairKind::ParticleEdge, first, edge), (&self.setting, &mut *self.counts));
+            let (pair, with) = (pair(PairKind::ParticleEdge, first, edge), (&self.input, &mut *self.counts));
             if compute_edge(pair, row, with, self.cursor, output) {
                 return true;
             }
@@ -125,7 +125,7 @@ impl HitSearch<'_> {
         let lane = first - self.group.particles.start;
         let rows = self.group.half_planes.as_chunks::<SHORT_ROW_LENGTH>().0;
         for second in seconds {
-            let (pair, with) = (pair(PairKind::ParticleHalfPlane, first, second), (&self.setting, &mut *self.counts));
+            let (pair, with) = (pair(PairKind::ParticleHalfPlane, first, second), (&self.input, &mut *self.counts));
             if compute_two_polynomials(pair, &rows[second * width + lane], with, self.cursor, output) {
                 return true;
             }
@@ -149,8 +149,7 @@ impl HitSearch<'_> {
         while block < seconds.end && !ends {
             largest = compute_particles(simd, self.lists, [first, block], rows, largest);
             for (row, second) in rows.as_chunks().0[..width].iter().zip(block..seconds.end) {
-                let (pair, with) =
-                    (pair(PairKind::ParticleParticle, first, second), (&self.setting, &mut *self.counts));
+                let (pair, with) = (pair(PairKind::ParticleParticle, first, second), (&self.input, &mut *self.counts));
                 ends = compute_two_polynomials(pair, row, with, self.cursor, output);
                 if ends {
                     break;
@@ -170,12 +169,12 @@ fn compute_edge(
     pair: Pair,
     row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
     with: (&PassInput<'_>, &mut SearchCounts),
-    place: &mut PassCursor,
+    cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[EDGE_FACTS_INDEX].to_bits();
     let ends =
-        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
+        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, cursor);
     if known & OPEN_BIT == 0 {
         output.excluded += 1;
     }
@@ -190,12 +189,12 @@ fn compute_two_polynomials(
     pair: Pair,
     row: &[f64; SHORT_ROW_LENGTH],
     with: (&PassInput<'_>, &mut SearchCounts),
-    place: &mut PassCursor,
+    cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[FACTS_INDEX].to_bits();
     let ends = known & OPEN_BIT != 0
-        && output.decide(with.1, |counts| decide_two_polynomials(with.0, counts, pair, row), pair, place);
+        && output.decide(with.1, |counts| decide_two_polynomials(with.0, counts, pair, row), pair, cursor);
     if known & OPEN_BIT == 0 {
         output.excluded += 1;
     }

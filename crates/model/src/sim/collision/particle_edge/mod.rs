@@ -20,14 +20,8 @@ pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -
 }
 
 /// Returns the response along normal `n` at time `t`, from the mean velocities of the step.
-pub(super) fn response(
-    setting: &ResponseInput<'_>,
-    i: usize,
-    [first, second]: [usize; 2],
-    n: Vec2,
-    t: f64,
-) -> Response {
-    let ResponseInput { bodies, law, q_start, q_end } = *setting;
+pub(super) fn response(input: &ResponseInput<'_>, i: usize, [first, second]: [usize; 2], n: Vec2, t: f64) -> Response {
+    let ResponseInput { bodies, law, q_start, q_end } = *input;
     let v1 = law.mean_velocity(q_start, q_end, i);
     let v2 = law.mean_velocity(q_start, q_end, first);
     let v3 = law.mean_velocity(q_start, q_end, second);
@@ -156,10 +150,10 @@ mod tests {
             scene.edges.push(edge(1, 2, 0.05));
             let bodies = Bodies::new(&scene);
             let end: [f64; 6] = std::array::from_fn(|k| start[k] + 0.5 * v[k]);
-            let setting =
+            let input =
                 ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &start, q_end: &end };
             let (mut q, mut after) = (end, v);
-            response(&setting, 0, [1, 2], vector(numbers.next_pair()), 0.5).apply(&mut q, &mut after);
+            response(&input, 0, [1, 2], vector(numbers.next_pair()), 0.5).apply(&mut q, &mut after);
             for axis in 0..2 {
                 let momentum = |v: &[f64; 6]| (0..3).map(|p| masses[p] * v[2 * p + axis]).sum::<f64>();
                 assert!((momentum(&v) - momentum(&after)).abs() < 1e-12);
