@@ -26,8 +26,8 @@ const HALF_PI_PARTS: [f64; 4] = [
     f64::from_bits(0xbc8c_b3b3_9800_0000),
     f64::from_bits(0xbacd_747f_23e3_2ed7),
 ];
-/// The number π/2 in two parts of half of a number's bits.
-const HALF_PI_HALVES: [f64; 2] = [HALF_PI_PARTS[0], f64::from_bits(0xbe4d_de97_4000_0000)];
+/// The number π/2 as a high and a low part, each of half of a number's bits.
+const HALF_PI_HIGH_LOW: [f64; 2] = [HALF_PI_PARTS[0], f64::from_bits(0xbe4d_de97_4000_0000)];
 /// The factor 2^27 + 1 that splits a number into two halves of its bits.
 const SPLIT_FACTOR: f64 = 134_217_729.0;
 
@@ -74,8 +74,8 @@ pub(super) fn reduce_large(x: f64) -> ReducedAngle {
     let high = scaled - (scaled - sum);
     let low = sum - high;
     let product = sum * HALF_PI[0];
-    let more = (((high * HALF_PI_HALVES[0] - product) + high * HALF_PI_HALVES[1]) + low * HALF_PI_HALVES[0])
-        + (low * HALF_PI_HALVES[1] + sum * HALF_PI[1] + rest * HALF_PI[0]);
+    let more = (((high * HALF_PI_HIGH_LOW[0] - product) + high * HALF_PI_HIGH_LOW[1]) + low * HALF_PI_HIGH_LOW[0])
+        + (low * HALF_PI_HIGH_LOW[1] + sum * HALF_PI[1] + rest * HALF_PI[0]);
     let angle = product + more;
     ReducedAngle { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
 }
