@@ -65,7 +65,7 @@ pub enum Anchor {
 
 /// The color of a text.
 #[derive(Debug, Clone, Copy)]
-pub enum Tone {
+pub enum TextColor {
     Plain,
     Faint,
     Mark,
@@ -215,7 +215,7 @@ impl Sheet {
     }
 
     /// Draws a line of text. The position `[x, y]` is on its base line.
-    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
+    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, color: TextColor, text: &str) {
         // A text starts at its position unless another alignment is set.
         let anchor = match anchor {
             Anchor::Start if self.is_styled => "",
@@ -223,10 +223,10 @@ impl Sheet {
             Anchor::Middle => " text-anchor=\"middle\"",
             Anchor::End => " text-anchor=\"end\"",
         };
-        let (class, color) = match tone {
-            Tone::Plain => ("", "#1b1f24"),
-            Tone::Faint => (" class=\"ft\"", "#5f6871"),
-            Tone::Mark => (" class=\"bt\"", "#b3261e"),
+        let (class, color) = match color {
+            TextColor::Plain => ("", "#1b1f24"),
+            TextColor::Faint => (" class=\"ft\"", "#5f6871"),
+            TextColor::Mark => (" class=\"bt\"", "#b3261e"),
         };
         let (x, y) = (format_pixel(x), format_pixel(y));
         let _ = writeln!(
@@ -240,9 +240,9 @@ impl Sheet {
     /// Draws the axis of the steps, with numbers on one line and its name on another.
     pub fn draw_steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
         for tick in ticks(columns.steps) {
-            self.text([columns.x(tick - 1), numbers], Anchor::Middle, Tone::Faint, &tick.to_string());
+            self.text([columns.x(tick - 1), numbers], Anchor::Middle, TextColor::Faint, &tick.to_string());
         }
-        self.text([RIGHT, name], Anchor::End, Tone::Faint, "step");
+        self.text([RIGHT, name], Anchor::End, TextColor::Faint, "step");
     }
 
     /// Draws the line of series `number` of `most`, with its markers between those of the others.
@@ -260,7 +260,7 @@ impl Sheet {
             if !matches!(ink, Ink::Mark) {
                 self.draw_marker(ink, [x + 13.0, base - 4.0]);
             }
-            self.text([x + 32.0, base], Anchor::Start, Tone::Plain, name);
+            self.text([x + 32.0, base], Anchor::Start, TextColor::Plain, name);
             #[expect(clippy::cast_precision_loss, reason = "names are short")]
             let wide = name.chars().count() as f64;
             // Small screens show larger letters.
