@@ -8,7 +8,7 @@ use super::{
     number::{format_exact, format_tidy},
     style::{Style, TextStyle},
     table::{Align, Cell, Table},
-    view::{WrittenNumber, numbers, to_document, view},
+    view::{WrittenNumber, to_document, to_written_numbers, view},
 };
 use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
@@ -20,7 +20,7 @@ use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion
 use fosssim_num::{interval::Interval, number_serde::WrittenNumbers, polynomial::Polynomial};
 use serde::Serialize;
 
-/// The version of the JSON document's form.
+/// The version of the JSON document's schema.
 pub const DETECT_SCHEMA: u32 = 1;
 
 /// The place in a scene's run at which a pair was examined.
@@ -346,7 +346,7 @@ pub(crate) fn format_polynomial(coefficients: &[f64], number: FormatFn) -> Strin
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(crate) struct DetectView<'a> {
-    /// The version of this document's form.
+    /// The version of the schema.
     #[schemars(extend("const" = DETECT_SCHEMA))]
     schema: u32,
     /// The place in a scene's run at which the pair was examined; null if the user typed the numbers.
@@ -389,7 +389,7 @@ view! {
         /// here, and if all are missing, there are no lists. Null for the reference's own run, and if the trace logs
         /// another number of polynomials in the pass, because its lists can't be assigned to calls then.
         logged: Option<Vec<Vec<WrittenNumber>>> = match place.logged {
-            CallLog::Polynomials(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
+            CallLog::Polynomials(logged) => Some(logged.iter().map(|list| to_written_numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
             CallLog::Nothing | CallLog::Unknown => None,
         },
@@ -494,7 +494,7 @@ impl From<&PairMotion> for MotionView {
             }
         };
         let point = |point: PointMotion| PointView { start: point.start.write(), displacement: point.shift.write() };
-        Self { points: moving.into_iter().map(point).collect(), radii: numbers(&radii), half_plane }
+        Self { points: moving.into_iter().map(point).collect(), radii: to_written_numbers(&radii), half_plane }
     }
 }
 

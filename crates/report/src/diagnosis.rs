@@ -166,7 +166,7 @@ view! {
     /// The likely mistakes of the program that wrote the traces.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct DiagnosisView<'a> from diagnosis: Diagnosis {
-        /// The version of this document's form.
+        /// The version of the schema.
         #[schemars(extend("const" = SCHEMA))]
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
@@ -196,7 +196,7 @@ view! {
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// The way in which the program ended, if it did not end well; null otherwise.
+        /// A note on how the program ended; null if it ended well.
         note: Option<&'a str> = case.note.as_deref(),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {

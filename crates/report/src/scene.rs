@@ -29,10 +29,10 @@ fn describe_size(scene: &Scene) -> String {
         (scene.half_planes.len() as u64, "half-plane"),
         (scene.step_count().into(), "step"),
     ];
-    let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| format_count(*many, noun));
+    let counts = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| format_count(*many, noun));
     let milestones = scene.assignments().map(|assignment| assignment.key().to_uppercase());
     let milestones = milestones.reduce(|all, one| all + ", " + &one).map(|all| format!("for {all}"));
-    told.chain(milestones).collect::<Vec<_>>().join(", ")
+    counts.chain(milestones).collect::<Vec<_>>().join(", ")
 }
 
 /// Returns the first sentence of a text.

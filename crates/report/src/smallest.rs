@@ -23,9 +23,9 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));
-    let told = explanation_texts(&explanations[..explanations.len().min(1)], style);
-    let first = first.as_ref().filter(|_| told.is_empty()).map(describe_first);
-    let causes = note.iter().cloned().chain(first).chain(told).map(|line| format!("  {line}\n"));
+    let explanation_lines = explanation_texts(&explanations[..explanations.len().min(1)], style);
+    let first = first.as_ref().filter(|_| explanation_lines.is_empty()).map(describe_first);
+    let causes = note.iter().cloned().chain(first).chain(explanation_lines).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
     parts.extend(small.difference.clone());
     parts.extend(small.calculation.iter().map(|by_hand| heading("By hand") + by_hand));
@@ -51,7 +51,7 @@ view! {
         runs: u32 = small.runs,
         /// Whether no single change makes the scene smaller. It is false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// The way in which the program ended, if it did not end well; null otherwise.
+        /// A note on how the program ended; null if it ended well.
         note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first_finding {

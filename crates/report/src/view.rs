@@ -53,8 +53,8 @@ pub(crate) fn to_document(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
-/// Converts several numbers for JSON.
-pub fn numbers(values: &[f64]) -> Vec<WrittenNumber> {
+/// Converts several numbers to the form in which JSON contains them.
+pub fn to_written_numbers(values: &[f64]) -> Vec<WrittenNumber> {
     values.iter().copied().map(WrittenNumber).collect()
 }
 

@@ -156,7 +156,7 @@ view! {
     /// Numbers that are not finite are written as the texts nan, -nan, inf and -inf.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CheckView<'a> from check: Check<'a> {
-        /// The version of this document's form.
+        /// The version of the schema.
         #[schemars(extend("const" = CHECK_SCHEMA))]
         schema: u32 = CHECK_SCHEMA,
         /// The name of the scene, as the user typed it.

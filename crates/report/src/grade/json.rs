@@ -39,7 +39,7 @@ fn view_in_scene(scene: &SceneGrade, mistake: &Explanation) -> ExplanationView {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(crate) struct GradeDocument {
-    /// The version of this document's form.
+    /// The version of the schema.
     #[schemars(extend("const" = SCHEMA))]
     schema: u32,
     /// The version of fosssim-oracle that wrote the document.

@@ -97,8 +97,8 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
 /// Returns the wrong position or velocity that comes first in a scene by the official rules, or else by the fair ones:
 /// the original's rules also reject polynomials for round-off.
 fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
-    let told = scene.disclosure.as_ref()?;
-    let firsts = [Some(told.official()), told.fair.as_ref()].into_iter().flatten();
+    let disclosure = scene.disclosure.as_ref()?;
+    let firsts = [Some(disclosure.official()), disclosure.fair.as_ref()].into_iter().flatten();
     let is_state = |first: &&DisclosedFinding| matches!(first.kind(), FindingKind::Position | FindingKind::Velocity);
     firsts.filter_map(|book| book.first_divergence.as_ref()).find(is_state)
 }

@@ -23,7 +23,7 @@ pub struct Card {
 }
 
 /// The size in bytes from which motions are rounded.
-const MIN_ROUNDED_BYTES: usize = 60_000;
+const ROUNDING_THRESHOLD_BYTES: usize = 60_000;
 
 impl Card {
     /// Returns the card of a case, below a heading of level `depth`; `None` if the hints do not allow it.
@@ -37,7 +37,7 @@ impl Card {
                 .unwrap_or_default()
         };
         let data = blocks(Precision::Budgeted);
-        let rounded = if data.len() > MIN_ROUNDED_BYTES { blocks(Precision::Rounded) } else { String::new() };
+        let rounded = if data.len() > ROUNDING_THRESHOLD_BYTES { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
         Some(Self { html: case.render_trace_part(KEY_PLACEHOLDER, depth, CAUSE_MARK), data, rounded })
     }

@@ -61,21 +61,21 @@ impl GradePage<'_> {
         };
         let grade = shown.as_ref();
         let causes = group_by_cause(grade);
-        let told: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
+        let rows: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let has_reader_column =
             self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
-        let is_accepted = told.iter().all(|(scene, _)| scene.verdict.is_accepted());
+        let is_accepted = rows.iter().all(|(scene, _)| scene.verdict.is_accepted());
         let content = GradeContent {
             page: self,
             grade,
-            card_details: card_details::distribute(told.iter().map(|(_, card)| card.as_ref())),
+            card_details: card_details::distribute(rows.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.submission_fault().is_none(),
             has_groups: grade.submission_fault().is_none() || grade.points > Some(0.0),
             is_accepted,
             has_reader_column,
             columns: 4 + usize::from(has_reader_column) + usize::from(!is_accepted),
             cause_sizes: causes.iter().map(Vec::len).collect(),
-            listed: told,
+            listed: rows,
         };
         // Without cards, the viewer is left out, because it would be most of the page.
         let script = if content.has_scenes && !content.listed.is_empty() { script() } else { "" };
@@ -150,8 +150,8 @@ impl GradeContent<'_> {
     /// Returns the parts of the page about the listed scenes, grouped by cause.
     fn articles(&self) -> Vec<Vec<Article<'_>>> {
         let mut outputs = if self.grade.shows_output { OUTPUT_BUDGET } else { 0 };
-        let told = self.listed.iter().zip(&self.card_details);
-        let mut articles = told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
+        let scenes = self.listed.iter().zip(&self.card_details);
+        let mut articles = scenes.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
         self.cause_sizes.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
     }
 

@@ -3,7 +3,7 @@ use super::super::{
     detect::format_polynomial,
     style::{Style, TextStyle},
     table::{Align, Table},
-    view::{SCHEMA, numbers},
+    view::{SCHEMA, to_written_numbers},
 };
 use fosssim_judge::{PairText, PassText, Role};
 use fosssim_model::trace::{Frame, PolynomialLabel};
@@ -131,15 +131,15 @@ impl ShownStep<'_> {
                 "pass": label.map(|label| label.pass),
                 "pair": label.map(|label| label.pair),
                 "role": label.map(|label| Role::from_number(label.pair.kind, label.number)),
-                "coefficients": numbers(coefficients),
+                "coefficients": to_written_numbers(coefficients),
             })
         };
         json!({
             "frame": record.number,
             "offset": record.offset,
             "mid": record.is_mid,
-            "positions": numbers(&frame.state.positions),
-            "velocities": numbers(&frame.state.velocities),
+            "positions": to_written_numbers(&frame.state.positions),
+            "velocities": to_written_numbers(&frame.state.velocities),
             "impulses": frame.impulses,
             "polynomials": frame.polynomials.iter().enumerate().map(polynomial).collect::<Vec<_>>(),
             "oddities": record.notes,

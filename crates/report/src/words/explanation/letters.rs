@@ -21,9 +21,9 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
     }
     if let Some((kind, one, two)) = example {
         let (start, shift) = (format!("x{one}{two}"), format!("d{one}{two}"));
-        let told = if kind == 'x' { start } else { shift };
+        let difference = if kind == 'x' { start } else { shift };
         let prefix = if kind == 'x' { "x" } else { "dx" };
-        parts.push(format!("{told} is {prefix}{one} - {prefix}{two}, and so on"));
+        parts.push(format!("{difference} is {prefix}{one} - {prefix}{two}, and so on"));
         parts.push("x is a position at the start of the step, dx a displacement".to_owned());
     }
     if reach {

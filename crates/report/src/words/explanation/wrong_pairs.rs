@@ -46,15 +46,15 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     let of_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|one| one.description.as_str()).collect();
-        let told = format!("{} {names} are {}", fault.share, describe_times(fault.times));
+        let sentence = format!("{} {names} are {}", fault.share, describe_times(fault.times));
         if common.is_empty() {
-            return told;
+            return sentence;
         }
         let all = if fault.traits.iter().all(|one| one.exceptions == 0) { "all" } else { "nearly all" };
-        format!("{told}. In {all} of these, {}", common.join(", or "))
+        format!("{sentence}. In {all} of these, {}", common.join(", or "))
     };
-    let told: Vec<String> = faults.iter().map(of_fault).collect();
-    format!("Near pairs: {}.", told.join(". Besides, "))
+    let sentences: Vec<String> = faults.iter().map(of_fault).collect();
+    format!("Near pairs: {}.", sentences.join(". Besides, "))
 }
 
 /// Returns lines about the first affected pair, the number of pairs, and the exact form of their common properties.
