@@ -14,7 +14,7 @@ use super::{
 /// The result of a simulated run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
-    /// The way in which the run ended.
+    /// The result of the run.
     pub ended: RunEnd,
     /// The trace that the run writes, if the job has a trace. It writes none if this is empty.
     pub trace: Vec<u8>,

@@ -18,7 +18,7 @@ pub struct CapturedOutput {
 /// The outcome of a run of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
-    /// The way in which the run ended.
+    /// The result of the run.
     pub ended: RunEnd,
     /// The processor time of all processes of the run, in user mode and in the kernel.
     pub cpu: Duration,

@@ -30,7 +30,7 @@ pub(super) struct ProgramFacts {
     pub(super) executable: Vec<PathBuf>,
     /// The names by which these files are requested. They may be links.
     pub(super) named_paths: Vec<PathBuf>,
-    /// The way to run the program, if it is a script.
+    /// The interpreter and its arguments; `None` if the program is not a script.
     pub(super) script: Option<Script>,
 }
 

@@ -34,8 +34,8 @@ impl AttackRequirement {
         Self { name: "x86_64", layers: &[], by_processor: cfg!(target_arch = "x86_64") },
     ];
 
-    const fn new(name: &'static str, walls: &'static [Layer]) -> Self {
-        Self { name, layers: walls, by_processor: false }
+    const fn new(name: &'static str, layers: &'static [Layer]) -> Self {
+        Self { name, layers, by_processor: false }
     }
 
     /// Returns whether a host with these layers offers what the attack needs.

@@ -39,7 +39,7 @@ pub(super) struct ChildPlan {
     pub(super) opened: Option<OpenedFile>,
     /// The program as an open file whose number is beyond the limit of descriptors. If executions are not announced,
     /// the program is executed from it.
-    pub(super) entrance: Option<OwnedFd>,
+    pub(super) entry_file: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
     /// The compiled filters, if system calls are filtered.
     pub(super) filters: Option<Filters>,
@@ -173,30 +173,30 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
 /// Returns the purpose of the filters for a child with the process number `number`.
-pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
-    let walls = order.layers;
+pub(super) fn purpose(order: &RunOrder, own_user: bool, entry_file: Option<u64>, number: i32) -> Purpose {
+    let layers = order.layers;
     Purpose {
         tools: order.allows_tools,
-        announce: walls.notify,
+        announce: layers.notify,
         // Tools send signals to their own children. Landlock's scope or a separate user distinguishes these from other
         // processes.
-        own_process: (!order.allows_tools || !(walls.scopes || walls.own_user)).then_some(number),
-        entrance,
+        own_process: (!order.allows_tools || !(layers.scopes || layers.own_user)).then_some(number),
+        entry_file,
         own_user,
     }
 }
 
 /// Installs the filters, and sends the listener to the supervisor.
 fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
-    let walls = plan.order.layers;
-    let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
-    let purpose = purpose(&plan.order, plan.user.is_some(), entrance, std::process::id() as i32);
+    let layers = plan.order.layers;
+    let entry_file = plan.entry_file.as_ref().map(|file| file.as_raw_fd() as u64);
+    let purpose = purpose(&plan.order, plan.user.is_some(), entry_file, std::process::id() as i32);
     let compiled = match plan.filters.as_ref().filter(|filters| filters.0 == purpose) {
         Some(filters) => filters.clone(),
         None => Rc::new((purpose, filter::compile_filters(purpose)?)),
     };
     for (index, program) in compiled.1.iter().enumerate() {
-        let listener = sys::install_filter(program, walls.notify && index == 0)?;
+        let listener = sys::install_filter(program, layers.notify && index == 0)?;
         if let Some(listener) = listener {
             sys::send_descriptors(&plan.status, LISTENER_BYTE, [listener.as_fd()])?;
         }
@@ -228,8 +228,8 @@ fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]
     let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
     let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
     let open = |opened: &OpenedFile| sys::execute_open(opened.file.as_fd(), arguments, environment);
-    if let Some(entrance) = &plan.entrance {
-        return sys::execute_open(entrance.as_fd(), arguments, environment);
+    if let Some(entry_file) = &plan.entry_file {
+        return sys::execute_open(entry_file.as_fd(), arguments, environment);
     }
     match &plan.opened {
         _ if plan.order.interpreter.is_some() => sys::execute(&path, arguments, environment),

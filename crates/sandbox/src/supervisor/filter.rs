@@ -125,7 +125,7 @@ pub(super) struct Purpose {
     pub(super) own_process: Option<i32>,
     /// The descriptor from which the program itself is executed, if calls are not announced. Its number is beyond the
     /// limit of descriptors, so no other file can get it.
-    pub(super) entrance: Option<u64>,
+    pub(super) entry_file: Option<u64>,
     /// Whether the program runs as its own user, so that permissions protect the files of others.
     pub(super) own_user: bool,
 }
@@ -157,14 +157,14 @@ fn denial_rules(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     };
     let own_files = purpose.tools && purpose.own_user;
     // If the program is a build tool, the supervisor decides about these calls.
-    let asked = purpose.tools && purpose.announce;
+    let supervised = purpose.tools && purpose.announce;
     for (group, is_rejected) in [
         (calls::DENIED_CALLS, true),
         (calls::LINK_CALLS, !purpose.tools),
         (calls::IDENTITY_CALLS, !purpose.tools),
         (calls::TIMES_BY_NAME, !own_files),
-        (calls::MODE_CALLS, !own_files && !asked),
-        (calls::LOCK_CALLS, !asked),
+        (calls::MODE_CALLS, !own_files && !supervised),
+        (calls::LOCK_CALLS, !supervised),
     ] {
         for (_, call) in group.iter().filter(|_| is_rejected) {
             let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
@@ -196,7 +196,8 @@ fn denial_rules(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let flag = libc::O_ASYNC as u64;
     let asynchronous =
         vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
-    let commands = if asked { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
+    let commands =
+        if supervised { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
     // Opening a file for reading can truncate it. Older versions of Landlock do not prevent that.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
@@ -249,8 +250,8 @@ fn forbidden_rules(purpose: Purpose) -> io::Result<CallRules> {
         // The supervisor allows the first execution, which starts the program itself. Without a listener, the filter
         // allows executions only from the reserved descriptor.
         rules.insert(libc::SYS_execve, Vec::new());
-        let entrance = purpose.entrance.map(|number| all_differ(0, &[number]));
-        rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
+        let entry_file = purpose.entry_file.map(|number| all_differ(0, &[number]));
+        rules.insert(libc::SYS_execveat, entry_file.into_iter().collect::<io::Result<_>>()?);
     }
     let parted = (libc::CLONE_THREAD | libc::CLONE_FILES) as u64;
     clone.push(mask_rule(0, parted, libc::CLONE_THREAD as u64)?);
@@ -330,7 +331,7 @@ mod tests {
                 tools,
                 announce: true,
                 own_process: Some(77),
-                entrance: None,
+                entry_file: None,
                 own_user: true,
             })
             .unwrap();
@@ -346,7 +347,7 @@ mod tests {
             tools: false,
             announce: false,
             own_process: Some(77),
-            entrance: Some(99),
+            entry_file: Some(99),
             own_user: true,
         })
         .unwrap();

@@ -34,7 +34,7 @@ pub(super) struct FolderUsage {
     pub(super) bytes: u64,
     /// The number of files and folders.
     pub(super) files: u64,
-    /// The number of folders, if they were counted.
+    /// The number of folders; 0 if they were not counted.
     pub(super) folders: u64,
     /// Whether a part could not be counted, because it is too deep, cannot be entered, or is beyond the limits.
     pub(super) exceeds_limit: bool,

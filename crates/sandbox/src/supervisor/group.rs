@@ -91,8 +91,8 @@ impl Group {
     }
 
     /// Opens the files by which a process enters the group. The process writes a zero to each of them.
-    pub(super) fn entrances(&self) -> io::Result<Vec<File>> {
-        self.parts.iter().map(GroupPart::entrance).collect()
+    pub(super) fn open_entry_files(&self) -> io::Result<Vec<File>> {
+        self.parts.iter().map(GroupPart::open_entry_file).collect()
     }
 
     /// Returns whether all processes of the group can be killed by a single command.
@@ -211,7 +211,7 @@ impl GroupPart {
         if kind == HierarchyKind::Unified {
             part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }
-        part.entrance()?;
+        part.open_entry_file()?;
         part.find_limits();
         Ok(part)
     }
@@ -221,7 +221,7 @@ impl GroupPart {
         self.limits = self.kind.limits().iter().filter_map(held).collect();
     }
 
-    fn entrance(&self) -> io::Result<File> {
+    fn open_entry_file(&self) -> io::Result<File> {
         self.open(c"cgroup.procs", OFlags::WRONLY)
     }
 

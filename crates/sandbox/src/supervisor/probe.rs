@@ -61,10 +61,10 @@ fn probe() -> io::Result<Probe> {
     match sys::fork()? {
         Fork::Child => {
             drop(parent);
-            let tried = try_layers(probe, user);
+            let outcome = try_layers(probe, user);
             // The result is written as to a file, because the filter allows no socket calls. This fails if the parent
             // has ended, which does not matter.
-            let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
+            let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &outcome);
             sys::exit_now(0)
         }
         Fork::Parent(_) => {
@@ -113,10 +113,10 @@ fn try_execution() -> (Option<String>, bool) {
 /// Tests whether a control group can kill a child. Returns the limits of the group, and whether it can.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::create(&RunOrder::default())?;
-    let mut entrances = group.entrances()?;
+    let mut entry_files = group.open_entry_files()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {
-        let word = entrances.iter_mut().try_for_each(|entrance| entrance.write_all(b"0"));
+        let word = entry_files.iter_mut().try_for_each(|entry_file| entry_file.write_all(b"0"));
         let word = word.map_err(|error| error.to_string());
         // If the prober has ended, sending fails, which does not matter. If the prober does not kill this process, the
         // process ends together with its parent, which is the prober.
@@ -146,16 +146,16 @@ fn try_namespaces() -> Option<String> {
         folder: wire::to_raw_bytes(Path::new("/usr")),
         ..RunOrder::default()
     };
-    let tried = || -> io::Result<Option<String>> {
-        let (answer, mut told) = io::pipe()?;
+    let probe = || -> io::Result<Option<String>> {
+        let (reader, mut writer) = io::pipe()?;
         if let Fork::Parent(child) = sys::fork()? {
-            drop(told);
-            let answer = wire::receive(answer);
+            drop(writer);
+            let answer = wire::receive(reader);
             sys::wait_for(child)?;
             return answer;
         }
-        drop(answer);
-        let word = match namespaces::enter(&order) {
+        drop(reader);
+        let report = match namespaces::enter(&order) {
             Ok(NamespaceSide::Inside) => Some(None),
             // The child has reported the reason itself, or has ended without a report.
             Ok(NamespaceSide::Outside(_)) => None,
@@ -164,10 +164,10 @@ fn try_namespaces() -> Option<String> {
             }
         };
         // This fails if the prober has ended, which does not matter.
-        let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
+        let _ = report.map(|report: Option<String>| wire::send(&mut writer, &report));
         sys::exit_now(0)
     };
-    tried().unwrap_or_else(|error| Some(error.to_string()))
+    probe().unwrap_or_else(|error| Some(error.to_string()))
 }
 
 /// Sets up one layer after the other, and records which of them work.
@@ -190,7 +190,7 @@ fn try_layers(mut probe: Probe, user: Option<u32>) -> Probe {
             tools: false,
             announce,
             own_process,
-            entrance: None,
+            entry_file: None,
             own_user: user.is_some(),
         })
     };

@@ -143,19 +143,19 @@ impl Run {
         let (status, child_status) = UnixStream::pair().map_err(failure_at("make a socket"))?;
         status.set_nonblocking(true).map_err(failure_at("make a socket"))?;
         let opened = OpenedFile::new(&wire::to_path(&order.program), slot.is_some(), order.limits.memory)?;
-        let entrance = open_entrance(&order, &opened)?;
+        let entry_file = open_entry_file(&order, &opened)?;
         let rules = prepared.file_rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
         let plan = ChildPlan {
             supervisor: std::process::id(),
             folder: folder.try_clone().map_err(failure_at("open the working folder"))?,
             opened: Some(opened),
-            entrance,
+            entry_file,
             rules,
             filters: prepared.filters.clone(),
             ignored: prepared.ignored_signals(),
             groups: group
                 .as_ref()
-                .map_or(Ok(Vec::new()), Group::entrances)
+                .map_or(Ok(Vec::new()), Group::open_entry_files)
                 .map_err(failure_at("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(failure_at("open /dev/null"))?.into(),
@@ -463,8 +463,8 @@ impl Run {
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// Returns the processor time of the control group, if some processes may not have been reaped. If there was only
-    /// one process, its own count is complete, and the group may contain the time of earlier runs.
+    /// Returns the control group's processor time if there may be processes that were not reaped, otherwise zero. The
+    /// count of a single process is complete, but the count of the group may include earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
@@ -529,14 +529,14 @@ fn take_ownership(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
 }
 
 /// Returns the descriptor number from which alone the program can be executed, if only the filter restricts executions.
-fn open_entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
+fn open_entry_file(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.layers.seccomp || order.layers.notify || order.allows_tools {
         return Ok(None);
     }
     let open = |path| OpenedFile::new(&wire::to_path(path), false, order.limits.memory);
     let interpreter = order.interpreter.as_ref().map(open).transpose()?;
-    let entrance = interpreter.as_ref().unwrap_or(opened).with_min_number(order.limits.open_files);
-    entrance.map(Some).map_err(failure_at("open the program once more"))
+    let entry_file = interpreter.as_ref().unwrap_or(opened).with_min_number(order.limits.open_files);
+    entry_file.map(Some).map_err(failure_at("open the program once more"))
 }
 
 /// Sends the descriptor of a working folder in memory to the grader.
