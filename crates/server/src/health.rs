@@ -23,7 +23,7 @@ pub fn recency_millis(policy: &QueuePolicy) -> i64 {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn record_report(
     transaction: &mut Transaction,
     (worker, version): (&str, &str),
@@ -54,7 +54,7 @@ pub async fn record_report(
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be read.
 pub async fn may_claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

@@ -14,7 +14,7 @@ use std::time::Duration;
 ///
 /// # Errors
 ///
-/// Fails if the database fails. The caller must not commit then.
+/// Fails if the database cannot be changed. The caller must not commit then.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
@@ -32,7 +32,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -61,7 +61,7 @@ pub async fn fail(
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
     let tick = queue::tick(&mut transaction, policy).await?;
@@ -236,7 +236,7 @@ pub struct GradeChange<'a> {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
     let statement = "SELECT result FROM grade WHERE submission = ? {for update}";
     let old = transaction.row(statement, values![change.submission]).await?;

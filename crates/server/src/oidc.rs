@@ -108,7 +108,7 @@ macro_rules! read_claims {
 /// The provider's configuration, and the time when it was read.
 #[derive(Debug)]
 struct KnownConfiguration {
-    asked_at: Instant,
+    requested_at: Instant,
     metadata: Result<CoreProviderMetadata, ProviderFault>,
 }
 
@@ -162,8 +162,8 @@ impl Provider {
     /// Returns the provider's configuration, which was read at most `age` ago.
     async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
-        if let Some(KnownConfiguration { asked_at, metadata }) = &*published
-            && asked_at.elapsed() < if metadata.is_ok() { age } else { MIN_PAUSE }
+        if let Some(KnownConfiguration { requested_at, metadata }) = &*published
+            && requested_at.elapsed() < if metadata.is_ok() { age } else { MIN_PAUSE }
         {
             return metadata.clone();
         }
@@ -174,7 +174,7 @@ impl Provider {
             tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
             ProviderFault::Unavailable(format!("{} does not answer correctly", self.label))
         });
-        *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
+        *published = Some(KnownConfiguration { requested_at: Instant::now(), metadata: metadata.clone() });
         metadata
     }
 

@@ -180,7 +180,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Fails if the store fails.
+    /// Fails if nothing can be written to the folder or bucket.
     pub async fn check_writable(&self) -> Result<(), StoreError> {
         let key = Key::from(format!("{TRASH_FOLDER}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
@@ -218,7 +218,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Fails if the store fails.
+    /// Fails if the folder or bucket cannot be read.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH_FOLDER)).await?.is_some())
     }

@@ -72,7 +72,7 @@ pub struct GradeParts {
 /// Reads the texts about an outcome's scenes from its `grade.json`.
 ///
 /// # Errors
-/// Fails if the store fails.
+/// Fails if the stored report cannot be read.
 pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<StoredTexts, StoreError> {
     let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(StoredTexts::default()) };
     let opened = store.open(&file.artifact.digest).await?;

@@ -80,7 +80,7 @@ impl Transaction {
     /// Runs a statement and returns the number of rows that it changed.
     ///
     /// # Errors
-    /// Fails if the database fails.
+    /// Fails if the database rejects the statement or does not answer.
     pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
         let text = statement::text(statement, self.dialect());
         let done = match &mut self.inner {
@@ -97,7 +97,7 @@ impl Transaction {
     /// Runs a statement and returns its rows.
     ///
     /// # Errors
-    /// Fails if the database fails.
+    /// Fails if the database rejects the statement or does not answer.
     pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
         let text = statement::text(statement, self.dialect());
         let rows = match &mut self.inner {
@@ -117,7 +117,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// Fails if the database fails, or a row cannot be read.
+    /// Fails if the database rejects the statement or does not answer, or if a row cannot be read.
     pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
@@ -126,7 +126,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// Fails if the database fails, or the row cannot be read.
+    /// Fails if the database rejects the statement or does not answer, or if the row cannot be read.
     pub async fn find<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<T>, DbError> {
         self.row(statement, values).await?.as_ref().map(T::from_row).transpose()
     }
@@ -135,7 +135,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// Fails if the database fails.
+    /// Fails if the database rejects the statement or does not answer.
     pub async fn row(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<Row>, DbError> {
         Ok(self.rows(statement, values).await?.into_iter().next())
     }
@@ -144,7 +144,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// Fails if the database fails or returns no row.
+    /// Fails if the database rejects the statement, does not answer, or returns no row.
     pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
         self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("the result is empty: {statement}")))
     }
@@ -164,7 +164,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// Fails if the database fails.
+    /// Fails if the database rejects the commit or does not answer.
     pub async fn commit(self) -> Result<(), DbError> {
         let committed = match self.inner {
             Inner::Sqlite(inner) => inner.commit().await,

@@ -94,7 +94,7 @@ pub struct Options {
     pub low_water: u64,
     /// The public address of the service.
     pub public: String,
-    /// The way in which a client's address is found: from the connection itself, or from a header of the proxy.
+    /// The source of a client's address: the connection itself, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
     /// The maximum pause while a request's body is received.
     pub patience: Duration,

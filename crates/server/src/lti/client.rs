@@ -146,18 +146,18 @@ impl Client {
         self.send(platform, &request, None).await?.ensure_success()
     }
 
-    async fn send(&self, platform: &Platform, ask: &ServiceRequest, token: Option<&str>) -> ServiceResult {
-        let Some(url) = platform.service_address(&ask.address, self.over_http) else {
-            let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
+    async fn send(&self, platform: &Platform, request: &ServiceRequest, token: Option<&str>) -> ServiceResult {
+        let Some(url) = platform.service_address(&request.address, self.over_http) else {
+            let host = Url::parse(&request.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "another host".to_owned());
             return Err(ServiceFault::Rejected(format!(
                 "the service is on {host}, which is not one of the platform's hosts; an administrator can add it"
             )));
         };
-        let (agent, ask) = (self.agent.clone(), ask.clone());
+        let (agent, request) = (self.agent.clone(), request.clone());
         let authorization = token.map(|token| format!("Bearer {token}"));
         let answer =
-            tokio::task::spawn_blocking(move || send_blocking(&agent, &url, &ask, authorization.as_deref())).await;
+            tokio::task::spawn_blocking(move || send_blocking(&agent, &url, &request, authorization.as_deref())).await;
         answer.map_err(ServiceFault::from_outage)?
     }
 
@@ -168,16 +168,16 @@ impl Client {
         database: &Database,
         platform: &Platform,
         scope: &str,
-        ask: &ServiceRequest,
+        request: &ServiceRequest,
     ) -> Result<ServiceAnswer, ServiceFault> {
         let token = self.token(database, platform, scope).await?;
-        let answer = self.send(platform, ask, Some(&token)).await?;
+        let answer = self.send(platform, request, Some(&token)).await?;
         if answer.status != 401 {
             return answer.ensure_success();
         }
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&(platform.id, scope.to_owned()));
         let token = self.token(database, platform, scope).await?;
-        self.send(platform, ask, Some(&token)).await?.ensure_success()
+        self.send(platform, request, Some(&token)).await?.ensure_success()
     }
 
     /// Returns a token for a scope. To get one, this service sends an assertion that it signed (SEC 4.1, RFC 7523).
@@ -229,14 +229,14 @@ pub(super) fn now_seconds() -> u64 {
 fn send_blocking(
     agent: &Agent,
     url: &Url,
-    ask: &ServiceRequest,
+    service_request: &ServiceRequest,
     authorization: Option<&str>,
 ) -> Result<ServiceAnswer, ServiceFault> {
-    let mut request = Request::builder().uri(url.as_str()).header("Accept", ask.accept);
+    let mut request = Request::builder().uri(url.as_str()).header("Accept", service_request.accept);
     if let Some(authorization) = authorization {
         request = request.header("Authorization", authorization);
     }
-    let answer = match &ask.body {
+    let answer = match &service_request.body {
         None => agent.run(request.body(()).map_err(ServiceFault::from_outage)?),
         Some((kind, body)) => {
             let request = request.method("POST").header("Content-Type", *kind).body(body);

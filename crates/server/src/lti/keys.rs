@@ -33,7 +33,7 @@ impl SigningKey {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the key cannot be generated or stored.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let generated = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = generated?;
@@ -64,7 +64,7 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
 }
 
 /// Returns all keys, the newest first. If there are no keys, the first one is created.
-async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
+async fn load_or_create_keys(database: &Database) -> Result<Vec<Row>, DbError> {
     let found = rows(&mut database.read().await?).await?;
     if !found.is_empty() {
         return Ok(found);
@@ -75,7 +75,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 
 /// Returns the key for signatures: the newest one that platforms had time to read, or otherwise the oldest.
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
-    let rows = all(database).await?;
+    let rows = load_or_create_keys(database).await?;
     let ready = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
     let row = ready.or(rows.last()).ok_or_else(|| DbError::Other("the server has no signing key".to_owned()))?;
     let der = URL_SAFE_NO_PAD
@@ -87,10 +87,10 @@ pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbErr
 /// Returns the public parts of the keys as a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
-/// Fails if the database fails.
+/// Fails if the keys cannot be read, or the first key cannot be created.
 pub async fn public_keys(database: &Database) -> Result<Value, DbError> {
     let mut keys = Vec::new();
-    for row in &all(database).await? {
+    for row in &load_or_create_keys(database).await? {
         keys.push(json!({
             "kty": "RSA", "alg": "RS256", "use": "sig",
             "kid": row.text("kid")?, "n": row.text("modulus")?, "e": row.text("exponent")?,

@@ -321,7 +321,7 @@ pub(crate) fn find_role(roles: &[String]) -> Option<LtiRole> {
 /// Returns the signed answer to a request for a link. It contains one link, which opens an assignment (DL 4.5).
 ///
 /// # Errors
-/// Fails if the database fails.
+/// Fails if the server's signing key cannot be read.
 pub async fn deep_linking_response(
     database: &Database,
     platform: &Platform,

@@ -10,10 +10,10 @@ mod crypto;
 mod keys;
 mod message;
 mod platform;
+mod platform_keys;
 mod roster;
 pub(crate) mod score;
 mod sender;
-mod trust;
 
 pub use client::{Client, ServiceFault};
 pub use keys::{new_key, public_keys};
@@ -26,14 +26,14 @@ pub use sender::run as send_scores;
 
 pub(crate) use client::scope;
 
-use trust::Trust;
+use platform_keys::PlatformKeys;
 
 /// The state that the service keeps for communication with platforms.
 #[derive(Debug)]
 pub struct Lti {
     /// The client for requests to platforms.
     pub client: Client,
-    trust: Trust,
+    platform_keys: PlatformKeys,
 }
 
 impl Default for Lti {
@@ -45,7 +45,7 @@ impl Default for Lti {
 impl Lti {
     /// Creates the state. With `over_http`, platforms without TLS are allowed, for tests on one machine.
     pub fn new(over_http: bool) -> Self {
-        Self { client: Client::new(over_http), trust: Trust::default() }
+        Self { client: Client::new(over_http), platform_keys: PlatformKeys::default() }
     }
 
     /// Returns whether plain HTTP is allowed for platforms and for this service.
@@ -60,7 +60,7 @@ impl Lti {
     /// Fails if the message is rejected. The error is the reason.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
         let kid = message::read_key_name(token)?;
-        let key = self.trust.key(&self.client, platform, &kid).await?;
+        let key = self.platform_keys.fetch(&self.client, platform, &kid).await?;
         message::read(platform, token, &key, nonce)
     }
 }

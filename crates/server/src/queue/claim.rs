@@ -20,7 +20,7 @@ pub struct Claimant<'a> {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -49,7 +49,7 @@ pub async fn claim(
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be read.
 pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
            (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})

@@ -19,7 +19,7 @@ pub enum Turn {
     Student(i64),
     /// A regrade; the value is its number.
     Campaign(i64),
-    /// A score that a platform receives; the values are the numbers of the account and of the link.
+    /// A score that a platform receives; the values are the numbers of the link and of the account.
     Score(i64, i64),
 }
 
@@ -79,7 +79,7 @@ pub struct NewJob<'a> {
 /// [`super::Notifier::commit`].
 ///
 /// # Errors
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
     let key = job.turn.key();
     let rank = job.turn.next(transaction).await?;
@@ -97,7 +97,7 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be read.
 pub async fn is_waiting(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";
     let row = transaction.row(statement, values![turn.key()]).await?;

@@ -46,7 +46,7 @@ pub struct Progress {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn renew(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -66,7 +66,7 @@ pub async fn renew(
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be read.
 pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
     let statement = "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -78,7 +78,7 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
     // The lease's key stays in the row, so that a repeated report is recognized.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
@@ -97,7 +97,7 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<bool, DbError> {
     let statement =
         "UPDATE job SET state = 'waiting', run_after = {now}, worker = NULL, lease_key = NULL, lease_until = NULL
@@ -110,7 +110,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

@@ -25,7 +25,7 @@ pub struct QueuePosition {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be read.
 pub async fn find_queue_position(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

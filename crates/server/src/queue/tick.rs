@@ -42,7 +42,7 @@ pub struct BuriedJob {
 ///
 /// # Errors
 ///
-/// Fails if the database fails.
+/// Fails if the database cannot be changed.
 pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;

@@ -23,8 +23,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Fails if the store fails, or if the referenced digests can't be found. Artifacts in the trash are checked again
-    /// in the next run.
+    /// Fails if the store cannot be listed or changed, or if the referenced digests can't be found. Artifacts in the
+    /// trash are checked again in the next run.
     pub async fn remove_unreferenced<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
         min_age: Duration,

@@ -55,8 +55,8 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
         let mut pairs = texts.flat_map(|value| value.split(';')).filter_map(|pair| pair.trim().split_once('='));
         pairs.find(|(cookie_name, _)| *cookie_name == name).map(|(_, value)| value.to_owned())
     };
-    let (session, browser) = (cookie(cookie_name(secure)), cookie(browser_cookie(secure)));
-    Secrets { bearer, session, browser, provider: cookie(provider_cookie(secure)), address: None }
+    let (session, platform_secret) = (cookie(cookie_name(secure)), cookie(browser_cookie(secure)));
+    Secrets { bearer, session, platform_secret, provider_secret: cookie(provider_cookie(secure)), address: None }
 }
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {

@@ -9,7 +9,7 @@ use std::{
 };
 use tokio::sync::watch;
 
-/// The way in which a child process ended.
+/// The end of a child process.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// The process exited with this code.

@@ -106,7 +106,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
     }
 }
 
-/// The way in which a job ended, for the report to the source.
+/// The end of a job, for the report to the source.
 enum JobEnd {
     Finished(Box<Outcome>),
     Failed(String),

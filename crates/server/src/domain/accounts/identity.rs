@@ -84,7 +84,7 @@ pub struct Link {
     pub link: Option<String>,
 }
 
-/// The way in which a person signed in.
+/// The method with which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::domain) enum SignInMethod {
     /// The person signed in through a provider or a learning platform, or with a link from the server or an

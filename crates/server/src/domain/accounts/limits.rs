@@ -1,7 +1,7 @@
 //! The limits on parallel transfers and on stored bytes: for an account, for a course, and for the whole server.
 use crate::domain::{
     Member, Throttle,
-    accounts::turns::{ArchiveTurn, Turns},
+    accounts::turns::{ArchiveQueue, ArchiveTurn},
 };
 use crate::{
     db::Transaction,
@@ -37,7 +37,7 @@ pub struct TransferLimits {
     pub server: u64,
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
-    archives: Turns,
+    archives: ArchiveQueue,
     rejected_archives: Throttle,
 }
 

@@ -63,7 +63,7 @@ impl Visitor {
             Some(person) => person.require_recent_browser().map(|_| person.account.id)?,
             None => 0,
         };
-        let browser = (&self.secrets, self.secrets.provider.as_ref());
+        let browser = (&self.secrets, self.secrets.provider_secret.as_ref());
         let started = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
         let address =
             provider.address(&self.app.answer_address(), self.app.compute_secrets(&started.state).await?).await?;
@@ -75,7 +75,7 @@ impl Visitor {
     /// # Errors
     /// Fails if the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
     pub async fn sign_in_by_provider(&self, state: &str, code: &str) -> Result<LaunchTarget, Problem> {
-        let (app, browser) = (&self.app, self.secrets.provider.as_ref());
+        let (app, browser) = (&self.app, self.secrets.provider_secret.as_ref());
         let provider = app.configured_provider()?;
         let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
         ensure(pending.service == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;

@@ -20,9 +20,9 @@ const HALF_LIFE: f64 = 60.0;
 /// The number of accounts above which accounts without recent use are removed from memory.
 const MAX_ACCOUNTS: usize = 10_000;
 
-/// The turns of all accounts.
+/// The queue of the archives of all accounts.
 #[derive(Debug, Default, Clone)]
-pub(in crate::domain) struct Turns(Arc<TurnParts>);
+pub(in crate::domain) struct ArchiveQueue(Arc<TurnParts>);
 
 #[derive(Debug, Default)]
 struct TurnParts {
@@ -44,7 +44,7 @@ struct TurnState {
 /// A turn, or a position in the queue for one. It ends when this value is dropped.
 #[derive(Debug)]
 pub struct ArchiveTurn {
-    turns: Turns,
+    turns: ArchiveQueue,
     account: i64,
     ticket: u64,
     start_time: Option<Instant>,
@@ -65,7 +65,7 @@ impl TurnState {
     }
 }
 
-impl Turns {
+impl ArchiveQueue {
     fn state(&self) -> MutexGuard<'_, TurnState> {
         self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -131,7 +131,7 @@ mod tests {
 
     #[tokio::test]
     async fn who_took_least_goes_first_and_nobody_has_two_turns() {
-        let turns = Turns::default();
+        let turns = ArchiveQueue::default();
         let now = Instant::now();
         turns.state().usage.insert(1, (30.0, now));
         let (one, two) = (turns.wait(1).await.expect("a turn"), turns.wait(2).await.expect("a turn"));

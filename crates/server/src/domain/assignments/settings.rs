@@ -267,7 +267,7 @@ impl Settings {
         self.forms.iter().any(|name| name == form)
     }
 
-    /// Returns the accepted forms as words for a message.
+    /// Returns a list of the accepted kinds of upload for a message, such as `a program or an archive`.
     pub fn describe_forms(&self) -> String {
         let accepted = Form::ALL.into_iter().filter(|form| self.accepts_form(*form));
         accepted.map(Form::describe).collect::<Vec<_>>().join(" or ")

@@ -82,7 +82,7 @@ impl Suites {
         self.entries.iter().find(|suite| suite.name == name).map_or(&[], |suite| &suite.groups)
     }
 
-    /// Returns the names of all suites, as words for a message.
+    /// Returns the names of all suites as a list for a message, such as `a, b or c`.
     pub fn describe(&self) -> String {
         match self.entries.iter().map(|suite| suite.name.as_str()).collect::<Vec<_>>().as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),

@@ -111,7 +111,7 @@ impl Visitor {
     ///
     /// Fails if there are too many sign-ins, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
-        let browser = (&self.secrets, self.secrets.browser.as_ref());
+        let browser = (&self.secrets, self.secrets.platform_secret.as_ref());
         let StartedSignIn { state, browser } =
             self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
         let nonce = self.app.compute_secret("nonce", &state).await?;
@@ -140,7 +140,8 @@ impl Visitor {
     ///
     /// Fails if the answer does not belong to such a sign-in or platform, or the person may not sign in this way.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
-        let pending = self.app.pending_sign_in(state, self.secrets.browser.as_ref(), Problem::refused_launch).await?;
+        let pending =
+            self.app.pending_sign_in(state, self.secrets.platform_secret.as_ref(), Problem::refused_launch).await?;
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
         let number: i64 = pending.service.parse().unwrap_or_default();
         let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;

@@ -216,7 +216,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// Fails if the store fails.
+    /// Fails if the artifact cannot be read.
     pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtifact, Problem> {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
@@ -225,7 +225,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// Fails if the store fails.
+    /// Fails if the artifact cannot be read.
     pub async fn read_beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
         let mut pieces = self.open(artifact).await?.pieces;
         let mut bytes = Vec::new();

@@ -86,7 +86,7 @@ impl RemoteWorker {
         Ok(WorkerSettings { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
     }
 
-    /// Extends a lease, and stores the progress of the grading.
+    /// Extends a lease, and stores the progress of the grading. Returns false if the lease is no longer valid.
     ///
     /// # Errors
     ///
@@ -95,7 +95,7 @@ impl RemoteWorker {
         Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
     }
 
-    /// Gives a job back to the queue.
+    /// Returns a job to the queue. Returns false if the lease is no longer valid.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -103,7 +103,7 @@ impl RemoteWorker {
         Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
 
-    /// Reports that the worker failed to grade a job.
+    /// Records that the worker failed to grade a job. Returns false if the lease is no longer valid.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -111,11 +111,12 @@ impl RemoteWorker {
         Ok(self.owns(lease).await? && self.source().fail(lease, &strip_controls(fault, 2000)).await?.held)
     }
 
-    /// Stores a result. Workers are not trusted, so the result may name only files that the worker stored for this job.
+    /// Stores a result. Returns false if the lease is no longer valid. Workers are not trusted, so the result may name
+    /// only files that the worker stored for this job.
     ///
     /// # Errors
     ///
-    /// Fails if the result is invalid.
+    /// Fails if the result is invalid, or if the database does not answer.
     pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
         if !self.owns(lease).await? {
             return Ok(false);

@@ -15,9 +15,9 @@ pub struct Secrets {
     /// The secret of a session, from a cookie.
     pub session: Option<String>,
     /// The secret of a sign-in at a learning platform, which the browser keeps in a cookie.
-    pub browser: Option<String>,
+    pub platform_secret: Option<String>,
     /// The secret of a sign-in at a provider, which the browser keeps in a cookie.
-    pub provider: Option<String>,
+    pub provider_secret: Option<String>,
     /// The address of the client that sent the request; `None` if it is unknown.
     pub address: Option<IpAddr>,
 }

@@ -19,14 +19,14 @@ const MIN_PAUSE: Duration = Duration::from_secs(5);
 
 /// The keys of each platform, by the platform's number.
 #[derive(Debug, Default)]
-pub(super) struct Trust(Mutex<HashMap<i64, KnownKeys>>);
+pub(super) struct PlatformKeys(Mutex<HashMap<i64, KnownKeys>>);
 
 #[derive(Debug, Clone)]
 struct KnownKeys {
     address: String,
     keys: Vec<PublicKey>,
     read_at: Option<Instant>,
-    asked_at: Instant,
+    requested_at: Instant,
 }
 
 #[derive(Deserialize)]
@@ -55,14 +55,14 @@ fn usable_keys(set: KeySet) -> Vec<PublicKey> {
     usable.filter_map(|key| Some(PublicKey { kid: key.kid?, n: key.n, e: key.e })).collect()
 }
 
-impl Trust {
+impl PlatformKeys {
     fn find_keys(&self, platform: &Platform) -> Option<KnownKeys> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
     /// Returns the platform's key that is called `kid`.
-    pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
+    pub(super) async fn fetch(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
         let find_key = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.find_keys(platform);
         if let Some(known) = &known {
@@ -71,7 +71,7 @@ impl Trust {
             {
                 return Ok(key);
             }
-            if known.asked_at.elapsed() < MIN_PAUSE {
+            if known.requested_at.elapsed() < MIN_PAUSE {
                 return find_key(known).ok_or(Rejection::UnknownKey);
             }
         }
@@ -79,12 +79,12 @@ impl Trust {
         let keys = answer.and_then(|answer| answer.read("the platform's keys").map(usable_keys));
         let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
         let updated = match keys {
-            Ok(keys) => KnownKeys { address, keys, read_at: Some(now), asked_at: now },
+            Ok(keys) => KnownKeys { address, keys, read_at: Some(now), requested_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
                 let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE_LIFETIME));
-                let none = || KnownKeys { address, keys: Vec::new(), read_at: None, asked_at: now };
-                KnownKeys { asked_at: now, ..before.unwrap_or_else(none) }
+                let none = || KnownKeys { address, keys: Vec::new(), read_at: None, requested_at: now };
+                KnownKeys { requested_at: now, ..before.unwrap_or_else(none) }
             }
         };
         let found = find_key(&updated);
