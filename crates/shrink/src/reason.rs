@@ -18,7 +18,7 @@ const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 pub struct Observation {
     /// The trace, up to the place at which it ends.
     pub trace: Vec<u8>,
-    /// The way in which the program ended.
+    /// The result of the run.
     pub ended: RunEnd,
 }
 
