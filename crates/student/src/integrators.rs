@@ -73,7 +73,7 @@ fn mishandle_fixed(world: &World, whole: Term, before: &State, state: &mut State
 
 /// Returns the rate at which velocities move positions, for a student who may use a different rate than the
 /// assignment's.
-fn change_rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
+fn position_rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.makes_slip(term, Slip::OtherVelocity) => other.to_vec(),
         () if world.student.makes_slip(term, Slip::MeanVelocity) => {
@@ -104,7 +104,7 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
     let old = state.v.clone();
     world.advance(of_v, &mut state.v, h, &accelerations);
     let (right, other) = if moves_by_old { (&old, &state.v) } else { (&state.v, &old) };
-    world.advance(of_x, &mut state.x, h, &change_rate(world, of_x, right, other));
+    world.advance(of_x, &mut state.x, h, &position_rate(world, of_x, right, other));
 }
 
 /// Sets the entries of fixed particles in a right-hand side to zero.
@@ -137,7 +137,7 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
     linear::solve(&mut matrix, &mut rhs, &mut linear::Workspace::default());
     let old = state.v.clone();
     world.advance(Term::LinearVelocities, &mut state.v, 1.0, &rhs);
-    world.advance(Term::LinearPositions, &mut state.x, h, &change_rate(world, Term::LinearPositions, &state.v, &old));
+    world.advance(Term::LinearPositions, &mut state.x, h, &position_rate(world, Term::LinearPositions, &state.v, &old));
     Ok(())
 }
 
@@ -195,7 +195,7 @@ fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(
             Term::ImplicitPositions,
             &mut state.x,
             h,
-            &change_rate(world, Term::ImplicitPositions, &new, &state.v),
+            &position_rate(world, Term::ImplicitPositions, &new, &state.v),
         );
     } else {
         state.x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += dx);

@@ -14,10 +14,10 @@ use super::{
 pub struct PenaltyLayer {
     /// The stiffness of the force.
     pub k: f64,
-    /// The thickness.
+    /// The thickness, which is added to the radii.
     pub h: f64,
-    /// The way to find pairs, which determines the order of the sum. In the contest, bodies at the same position do not
-    /// repel each other.
+    /// The method that finds the pairs, which determines the order of the sum. In the contest, bodies at the same
+    /// position do not repel each other.
     pub detection: CollisionDetection,
 }
 

@@ -13,7 +13,7 @@ use super::{
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
 
-/// The areas whose mistakes are made in this module.
+/// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// The numbers of one record, with this student's mistakes of logging. A list is `None` if scenes of this collision
@@ -71,18 +71,19 @@ impl Record {
     }
 }
 
-/// Returns the whole trace of this student's program, in memory, up to a failing step.
+/// Runs this student's program on `scene` and returns its trace.
 ///
 /// # Errors
-/// Fails with the bytes written so far, and the reason why there are no more.
+/// Returns the bytes written before the failing step, and the failure.
 pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     write_trace(scene, student, StepLog::default())
 }
 
-/// Returns the trace of a program that may run forever, up to the first step with more than `most` polynomials.
+/// Returns a trace like [`record_trace`], but a step with more than `most` polynomials fails. Without this
+/// limit, the program may run forever.
 ///
 /// # Errors
-/// Fails with the bytes written so far, and the reason why there are no more.
+/// Returns the bytes written before the failing step, and the failure.
 pub fn record_limited_trace(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
     write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })

@@ -10,7 +10,7 @@ use super::{
     world::{World, subtract},
 };
 
-/// The areas whose mistakes are made in this module.
+/// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Response];
 
 /// Returns twice `(1 + COR) / 2`.

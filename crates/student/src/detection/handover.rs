@@ -3,7 +3,7 @@ use fosssim_num::polynomial::Polynomial;
 
 use crate::{Area, Mistake, author::Student, objects::Object, rounding::round_to_f32};
 
-/// The areas whose mistakes are made in this module.
+/// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's

@@ -6,7 +6,7 @@ use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
 
-/// The areas whose mistakes are made in this module.
+/// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Divides the polynomials like this student, if at all.

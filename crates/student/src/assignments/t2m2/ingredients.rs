@@ -7,7 +7,7 @@ use fosssim_num::bounded::BoundedVector;
 pub struct Ingredient {
     /// The vector's name in messages.
     pub name: &'static str,
-    /// The ingredient's value.
+    /// The vector's value in a detection call.
     pub value: fn(&Inputs) -> BoundedVector,
     /// The cost of a guess with this vector.
     pub cost: f64,
