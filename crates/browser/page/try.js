@@ -79,7 +79,7 @@ async function simulateChange() {
 function showResult(value) {
   const { problems, more, steps, of, particles, edges, halfPlanes, stopped } = value;
   markProblems(problems);
-  const errors = problems.filter((problem) => problem.error).length;
+  const errorCount = problems.filter((problem) => problem.error).length;
   $("problems").replaceChildren(
     ...problems.map(({ error, line, column, message, help, from, to }) =>
       el(
@@ -99,7 +99,7 @@ function showResult(value) {
   film.now = isValid ? value : null;
   for (const id of ["play", "step", "save-png", "save-svg", "save-gif", "save-trace"]) $(id).disabled = !isValid;
   if (!isValid) {
-    $("try-said").textContent = `${formatCount(errors, "error")}: the picture shows the last scene without errors.`;
+    $("try-said").textContent = `${formatCount(errorCount, "error")}: the picture shows the last scene without errors.`;
     return;
   }
   $("try-said").textContent =
