@@ -44,7 +44,7 @@ fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
 /// The maximum number of names that a message gives as examples.
 const MAX_EXAMPLES: usize = 3;
 
-/// Returns the names that are most similar to a typed one, as words for a message.
+/// Returns a list, for a message, of the names that are most similar to a typed one.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
     let shown = suggestions::find_nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
     if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }

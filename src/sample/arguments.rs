@@ -97,8 +97,8 @@ fn student_from_options(
 }
 
 fn parse_mistake(source: &str, id: &str) -> Result<Mistake, String> {
-    let meant = || suggestions::suggest(id, all_rows().map(|row| row.id));
-    let unknown = || format!("{source} names the mistake '{id}', which does not exist; --list shows all{}", meant());
+    let suggest = || suggestions::suggest(id, all_rows().map(|row| row.id));
+    let unknown = || format!("{source} names the mistake '{id}', which does not exist; --list shows all{}", suggest());
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 

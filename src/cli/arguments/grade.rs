@@ -14,7 +14,7 @@ fn format_help(takes: impl Fn(Format) -> bool) -> String {
     format!("A report: {}; with =FILE, written to a file", Format::names(takes))
 }
 
-/// Returns the names of the built-in suites, as words for a help text.
+/// Returns the names of the built-in suites as a list for a help text.
 fn list_built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }

@@ -63,8 +63,8 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         // A variant is right, so a program that uses a variant would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let mistakes = student::all_rows().filter(|row| row.kind != RowKind::Variant);
-            let meant = suggestions::suggest(id, mistakes.map(|row| row.id));
-            bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
+            let suggestion = suggestions::suggest(id, mistakes.map(|row| row.id));
+            bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{suggestion}");
         }
     }
     if let Some(program) = &arguments.program {

@@ -70,7 +70,7 @@ pub(super) struct ExaminedProgram {
     pub(super) cards: Vec<Option<Card>>,
     /// The scenes of the cases, in the order of the cases.
     pub(super) tasks: Vec<SceneTask>,
-    /// The way in which the program ended in each case, and the number of complete steps.
+    /// For each case, the result of the run and the number of complete steps.
     pub(super) ends: Vec<(RunEnd, u32)>,
 }
 
@@ -312,14 +312,14 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
         return None;
     }
     let contents: Vec<Features> = tasks.iter().map(|task| FeatureIndex::for_scene(&task.scene)).collect();
-    let tried = tasks.iter().zip(&contents).zip(&ends);
-    let tried = tried.map(|((task, contents), &(failing, steps))| TriedScene {
+    let scenes = tasks.iter().zip(&contents).zip(&ends);
+    let scenes = scenes.map(|((task, contents), &(failing, steps))| TriedScene {
         scene: &task.name,
         failure: failing,
         steps,
         features: contents,
     });
-    locate_failure(&tried.collect::<Vec<_>>())
+    locate_failure(&scenes.collect::<Vec<_>>())
 }
 
 /// Returns the likely mistakes that explain all wrong traces together, and the keys of those that right traces refute.

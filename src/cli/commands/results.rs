@@ -166,8 +166,8 @@ impl Results<'_> {
             keep(write(file, || pages.render_grade(&grade.with_hidden_published(), None, Audience::Student)));
         }
         for report in reports {
-            let told = self.visible_grades(report.format);
-            let grades = told.as_ref();
+            let visible_grades = self.visible_grades(report.format);
+            let grades = visible_grades.as_ref();
             let render = || match (report.format, self.pages, grades) {
                 (Format::Html, Some(pages), [grade]) => pages.render_grade(grade, None, self.reader),
                 _ => report.format.render_class(grades, passed_over),
@@ -195,11 +195,11 @@ impl Results<'_> {
 impl<'a> Results<'a> {
     /// Returns the part of the grades that this format shows to the reader.
     fn visible_grades(&self, format: Format) -> Cow<'a, [Grade]> {
-        let told = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
-        if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
+        let visible_part = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
+        if self.grades.iter().all(|grade| matches!(visible_part(grade), Cow::Borrowed(_))) {
             return Cow::Borrowed(self.grades);
         }
-        Cow::Owned(self.grades.iter().map(|grade| told(grade).into_owned()).collect())
+        Cow::Owned(self.grades.iter().map(|grade| visible_part(grade).into_owned()).collect())
     }
 }
 

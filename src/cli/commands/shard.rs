@@ -22,7 +22,7 @@ const SHARD_FILE: &str = "shard.json";
 /// wrong.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// The version of the form of this file.
+/// The version of this file's schema.
 const SCHEMA: u32 = 1;
 
 /// The inputs that must be the same for all shards of a grading.

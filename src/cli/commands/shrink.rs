@@ -99,8 +99,8 @@ pub(super) fn add_smallest(
     for cause in causes {
         bar.next_run("making scenes smaller");
         let small = shrinker.shrink_cause(cause).map_err(anyhow::Error::msg)?;
-        let told = small.map(|small| describe(&small, &name, &program.suite, drawing));
-        if let Some((small, card)) = told.filter(|(told, _)| !is_repetition(told, &found)) {
+        let one = small.map(|small| describe(&small, &name, &program.suite, drawing));
+        if let Some((small, card)) = one.filter(|(one, _)| !is_repetition(one, &found)) {
             found.push(small);
             cards.push(card);
         }
@@ -124,7 +124,7 @@ pub(super) fn describe(
     let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     let Case { trace: program, note, first, explanations, .. } = case;
     let names = [program.as_str(), origin, suite].map(quote);
-    let mut told = SmallestScene {
+    let mut small = SmallestScene {
         origin: origin.clone(),
         command: format!("fosssim-oracle shrink {} {} --step {step} --suite {}", names[0], names[1], names[2]),
         program,
@@ -144,15 +144,16 @@ pub(super) fn describe(
         ..SmallestScene::default()
     };
     if drawing.hints == Hints::Full {
-        told.difference = list_differences(scene, &seen.trace);
-        if let (None, Some(DisclosedFinding::Full(Finding { step, detail, .. }))) = (&told.note, &told.first_finding) {
+        small.difference = list_differences(scene, &seen.trace);
+        if let (None, Some(DisclosedFinding::Full(Finding { step, detail, .. }))) = (&small.note, &small.first_finding)
+        {
             let alone =
                 step_starts(scene, &seen.trace, &[*step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
-            told.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, *step));
+            small.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, *step));
         }
     }
-    (told, card)
+    (small, card)
 }
 
 /// Returns the explanation of the cause, but with the example from the smallest scene.

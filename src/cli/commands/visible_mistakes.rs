@@ -28,7 +28,7 @@ pub(super) struct VisibleMistakes {
     pub(super) rarely_visible: Vec<&'static str>,
 }
 
-/// The number of scenes that are enough to show a mistake reliably.
+/// The maximum number of scenes listed for a mistake. That many show it reliably.
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
 /// Returns the areas of the assignment, in the order of the catalogue.

@@ -89,10 +89,10 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
 fn parse_kind(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
-        let meant = suggestions::suggest(word, names);
+        let suggestion = suggestions::suggest(word, names);
         format!(
             "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
-             half-plane){meant}"
+             half-plane){suggestion}"
         )
     })
 }

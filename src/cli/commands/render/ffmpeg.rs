@@ -147,8 +147,8 @@ impl Ffmpeg {
         self.encoder_watch.pictures.fetch_add(1, Ordering::Relaxed);
         let status = loop {
             // The lock is released while waiting, because the watching thread needs it.
-            let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
-            match asked.context("cannot wait for ffmpeg")? {
+            let status = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
+            match status.context("cannot wait for ffmpeg")? {
                 Some(status) => break status,
                 None => thread::sleep(Duration::from_millis(10)),
             }
