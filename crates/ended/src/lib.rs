@@ -44,8 +44,7 @@ pub enum RunEnd {
 }
 
 impl RunEnd {
-    /// Returns a name for the way in which the run ended, which never changes. Examples are `exited`, `cpu` and
-    /// `violation`.
+    /// Returns a name for this kind of result, which never changes. Examples are `exited`, `cpu` and `violation`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Exited(_) => "exited",

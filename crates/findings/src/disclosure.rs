@@ -54,7 +54,7 @@ impl Disclosure {
     }
 }
 
-/// The findings by one rule book, as far as a report may show them.
+/// The findings by one rule book that a report may show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DisclosedBook {
     /// The verdict by the rule book.
@@ -69,7 +69,7 @@ pub struct DisclosedBook {
     pub examples: Vec<DisclosedFinding>,
 }
 
-/// One finding, as far as a report may show it.
+/// The part of a finding that a report may show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DisclosedFinding {
     /// The kind and the place of the finding, without values.

@@ -22,9 +22,9 @@ pub use fosssim_ended::{RunEnd, StartProblem};
 pub struct SceneResult {
     /// The name of the scene, as `Group/name`.
     pub scene: String,
-    /// The verdict.
+    /// The verdict on the scene.
     pub verdict: Verdict,
-    /// The reason for the verdict, as a value.
+    /// The reason for the verdict.
     pub reason: Reason,
     /// The result of the run; `None` if the program was not run.
     pub ended: Option<RunEnd>,
@@ -138,7 +138,7 @@ pub enum Reason {
     Failed(Failure),
 }
 
-/// The fault of a trace, as far as the hints show it.
+/// The fault of a trace, if the hints show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
     /// The hints do not show what is wrong.

@@ -128,7 +128,7 @@ pub enum ChangeCause {
     Penalty,
     /// The forces, without the penalty force.
     Forces,
-    /// The integrator.
+    /// The integrator, which computes new positions and velocities from the forces.
     Integrator,
     /// The forces or the integrator, which the trace does not distinguish.
     ForcesOrIntegrator,
