@@ -4,10 +4,10 @@
 use super::{key::ResultKey, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
-/// The version of the form in which results are stored.
+/// The version of the schema of stored results.
 const FORM_VERSION: u32 = 6;
 
-/// A stored result. The version of the form comes first in it, because everything else depends on the version.
+/// A stored result. The version comes first, because it determines the schema of everything else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StoredResult {
     form: u32,
@@ -15,7 +15,7 @@ pub struct StoredResult {
     pub key: ResultKey,
     /// The name of the submission. It only informs readers of the file.
     pub submission: String,
-    /// The result.
+    /// The result of the scene.
     pub result: SceneResult,
 }
 

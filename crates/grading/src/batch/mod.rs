@@ -48,7 +48,7 @@ pub enum Event<'a> {
     GradeDone {
         /// The index of the submission.
         submission: usize,
-        /// The grade.
+        /// The submission's grade.
         grade: &'a Grade,
     },
 }

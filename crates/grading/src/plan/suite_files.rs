@@ -91,9 +91,10 @@ fn find_files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Mat
         let relative = path.strip_prefix(folder).unwrap_or(&path);
         let name = relative.with_extension("").to_string_lossy().into_owned();
         let xml = scene_file(&path)?;
-        room.scenes = room.scenes.checked_sub(1).ok_or_else(|| {
-            format!("with pattern {pattern} the suite has more than {MAX_SCENES} scenes, which is the limit")
-        })?;
+        room.scenes = room
+            .scenes
+            .checked_sub(1)
+            .ok_or_else(|| format!("with pattern {pattern} the suite exceeds the limit of {MAX_SCENES} scenes"))?;
         room.bytes = room.bytes.checked_sub(xml.len() as u64).ok_or_else(|| {
             format!(
                 "with pattern {pattern} the suite's scenes have more than {MAX_SCENE_BYTES} bytes, which is the \

@@ -132,8 +132,8 @@ pub fn for_each_line<E: From<io::Error>>(
             return Ok(());
         } else {
             let text = format!(
-                "the journal has a line of more than {MAX_LINE_BYTES} bytes, which is the limit for a result; remove \
-                    the line, and its scenes are graded again"
+                "a line of the journal exceeds the limit of {MAX_LINE_BYTES} bytes; remove the line, and its scenes \
+                    are graded again"
             );
             return Err(io::Error::other(text).into());
         }
