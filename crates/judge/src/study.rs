@@ -73,7 +73,7 @@ pub struct Answer {
     /// The intervals in which all polynomials are positive, over all times. They are sorted and disjoint, and an
     /// interval may be a single time.
     pub positive_intervals: Vec<Interval>,
-    /// The decision.
+    /// The decision whether the pair collides.
     pub decision: Decision,
 }
 

@@ -84,7 +84,7 @@ pub(crate) struct Records<'a> {
     pub before: &'a State,
     /// The mid record, if the layout has one.
     pub mid: Option<&'a LenientFrame>,
-    /// The end record.
+    /// The record of the state at the end of the step.
     pub end: &'a LenientFrame,
 }
 
