@@ -33,7 +33,7 @@ pub fn is_accepted(outcome: &Outcome) -> bool {
 pub struct WatchedScene {
     /// The scene's name.
     pub name: String,
-    /// The scene.
+    /// The scene that the programs simulate.
     pub scene: Scene,
     /// The trace of a right program.
     pub right: Vec<u8>,
