@@ -96,7 +96,7 @@ impl Support<'_> {
     }
 
     /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent
-    /// symptoms show the way in which it is wrong.
+    /// symptoms show how it is wrong.
     fn weight(&self) -> (usize, usize, usize) {
         (self.complete_traces.max(self.related_traces), self.traces.max(self.related_traces), self.complete_traces)
     }

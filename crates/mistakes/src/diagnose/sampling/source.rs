@@ -40,7 +40,7 @@ pub struct StepFrames {
     pub before: LenientFrame,
     /// The mid record, if the scene has one.
     pub mid: LenientFrame,
-    /// The end record.
+    /// The record of the state at the end of the step.
     pub end: LenientFrame,
 }
 
