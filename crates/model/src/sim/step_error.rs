@@ -10,7 +10,7 @@ pub enum StepError {
     RootSearch {
         /// The step, from 1.
         step: u32,
-        /// The pair.
+        /// The pair whose detection failed.
         pair: Pair,
     },
     /// Newton's method of implicit-euler does not converge (or cycles).

@@ -135,7 +135,7 @@ impl fmt::Display for Summary {
             writeln!(f, "trailing       {more}{}", format_count(*trailing, "byte"))?;
         }
         if let (count, Some(first)) = &self.notes {
-            writeln!(f, "odd            {}, the first: {first}", format_count(*count, "value"))?;
+            writeln!(f, "unusual        {}, the first: {first}", format_count(*count, "value"))?;
         }
         if self.layout.has_impulses {
             writeln!(f, "impulses       {}", self.impulses)?;

@@ -49,7 +49,7 @@ pub struct Rejection {
     pub explanation: String,
 }
 
-/// The ways in which the original rejects a scene.
+/// The kinds of rejections of a scene by the original.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RejectionKind {
     /// The original prints a message and exits.

@@ -1,4 +1,4 @@
-//! The same force on every particle, independent of its mass (simulation.md 3, constantforce). It has no Hessian.
+//! A constant force on every particle, independent of its mass (simulation.md 3, constantforce). It has no Hessian.
 use super::subtract;
 use fosssim_num::vector::Vec2;
 
