@@ -82,7 +82,7 @@ crate::closed_set! {
 /// A decision, with its enclosure, margin and level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CertifiedDecision {
-    /// The decision.
+    /// Whether the detection hits, or is too close to call.
     pub certainty: HitCertainty,
     /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Hits`, it is valid for every choice of
     /// coefficients; it is about as wide as the effect of the coefficients' errors, or wider if the polynomials nearly

@@ -183,7 +183,7 @@ fn rises_once(control: &BernsteinForm) -> bool {
     negative > 0 && positive > 0 && negative + positive + 1 >= values.len()
 }
 
-/// The sign of a polynomial on a piece, as far as its Bernstein coefficients show it.
+/// The sign of a polynomial on a piece, if its Bernstein coefficients show it.
 enum Sign {
     /// All coefficients are negative, and at least this far from zero.
     Negative(f64),

@@ -41,7 +41,7 @@ pub(crate) struct ExactPolynomial {
 /// The Bernstein coefficients on a piece of `[0, 1]`. The last `6 - length` are unused.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BernsteinForm {
-    /// The coefficients.
+    /// The coefficients in the Bernstein basis; only the first `length` are used.
     pub(crate) values: [f64; MAX_COEFFICIENTS],
     /// The number of coefficients.
     pub(crate) length: usize,
