@@ -20,7 +20,7 @@ use std::{
 pub(crate) struct Heading<'a> {
     /// The scene argument as typed.
     pub(crate) scene_name: &'a [u8],
-    /// The scene.
+    /// The scene that is simulated.
     pub(crate) scene: &'a Scene,
     /// The description, as written in the file.
     pub(crate) description: &'a [u8],
