@@ -241,7 +241,7 @@ fn describe_failure(failure: &Failure) -> String {
     }
 }
 
-/// Describes where a trace first differs from the reference, as far as the hints allow it.
+/// Describes where a trace first differs from the reference, if the hints allow it.
 pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),

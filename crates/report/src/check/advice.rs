@@ -25,7 +25,7 @@ fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'st
         ],
         (FindingDetail::SuperfluousCollision { .. }, CollisionType::Simple) => &[
             "the detection of this pair: at the end of the step the two do not overlap, or do not approach each other",
-            "objects that only touch do not overlap, and objects that keep their distance do not approach",
+            "does the test reject pairs that only touch, and pairs whose distance does not shrink?",
         ],
         (FindingDetail::WrongNormal { .. }, CollisionType::Simple) => &[
             "the contact normal: from the first object to the nearest point of the second, at the end of the step, not \
