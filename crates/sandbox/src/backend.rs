@@ -70,7 +70,7 @@ impl Supervisor {
             Ok(SpawnedSupervisor { host: RunSupervisor::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let spawned = begin().map_err(|source| self.start_error(source))?;
-        // If the supervisor does not read the order, its answer or the way in which it ends shows the reason.
+        // If the supervisor does not read the order, its answer or its exit status shows the reason.
         let _ = wire::send(&spawned.control, order);
         Ok(spawned)
     }

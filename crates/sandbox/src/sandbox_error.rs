@@ -27,7 +27,7 @@ pub enum SandboxError {
     /// The supervisor ended without a report.
     #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were killed")]
     Lost {
-        /// A description of the way in which the supervisor ended.
+        /// A description of the supervisor's end, such as its exit status.
         how: String,
     },
     /// A step of the set-up failed.

@@ -44,7 +44,7 @@ impl AttackRequirement {
     }
 }
 
-/// A way in which the run may end.
+/// A result that the run may have.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ExpectedEnd {
     kind: String,
