@@ -2,7 +2,7 @@
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 
-/// The versions of the form of `grade.json` that are supported. During an upgrade, a grader may be older than the
+/// The versions of the schema of `grade.json` that are supported. During an upgrade, a grader may be older than the
 /// server. The parts that are read here are the same in all supported versions.
 const SUPPORTED_SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
