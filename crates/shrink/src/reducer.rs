@@ -12,9 +12,9 @@ use std::collections::BTreeSet;
 /// A scene on which a program is wrong, after the search has made it as small as possible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallScene {
-    /// The scene.
+    /// The smallest scene that was found.
     pub scene: Scene,
-    /// The wrong step of the scene with which the search began.
+    /// The wrong step of the original scene, with which the search began.
     pub step: u32,
     /// Whether no single attempt makes the scene smaller. Otherwise the search was stopped.
     pub is_minimal: bool,
