@@ -6,7 +6,7 @@ use fosssim_model::assignments::{ForceKind, Integrator, PairKind, Part};
 /// The row of a quantity in the catalogue.
 #[derive(Debug)]
 pub struct TermRow {
-    /// The quantity.
+    /// The computed quantity, such as a force between two kinds of bodies.
     pub term: Term,
     /// The beginning of its rows' ids.
     pub id: &'static str,
@@ -223,15 +223,15 @@ terms! {
             &[Slip::Undivided, Slip::OneSided, Slip::OneSidedLong, Slip::OneSidedBack, Slip::ToPoint] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
-        DetectParticles "detect-particles" "The detection between two particles": "detectParticleParticle" [0 0 0] true
-            &[&[Slip::Missing]];
+        DetectParticles "detect-particles" "The collision detection of two particles":
+            "detectParticleParticle" [0 0 0] true &[&[Slip::Missing]];
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
-        DetectEdges "detect-edges" "The detection between a particle and an edge": "detectParticleEdge" [0 0 0] true
-            &[&[Slip::Missing]];
+        DetectEdges "detect-edges" "The collision detection of a particle with an edge":
+            "detectParticleEdge" [0 0 0] true &[&[Slip::Missing]];
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
-        DetectHalfPlanes "detect-half-planes" "The detection between a particle and a half-plane":
+        DetectHalfPlanes "detect-half-planes" "The collision detection of a particle with a half-plane":
             "detectParticleHalfplane" [0 0 0] true &[&[Slip::Missing]];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
@@ -272,7 +272,7 @@ terms! {
             "n = ((x_p - x) . q) / (q . q) q" [0 0 0] false &[NORMAL, &[Slip::ToPoint, Slip::Undivided] ];
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
-        ClosestPoint "closest-point" "The detection between a particle and an edge":
+        ClosestPoint "closest-point" "The collision detection of a particle with an edge":
             "alpha = (x_1 - x_2) . (x_3 - x_2) / |x_3 - x_2|^2, not below 0 and not above 1" [0 0 0] false &[ALPHA,
             &[Slip::EndsOut] ];
     }

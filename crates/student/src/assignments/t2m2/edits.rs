@@ -14,7 +14,7 @@ pub struct NamedEdit {
     pub sentence: &'static str,
     /// The exact form of the change.
     pub detail: &'static str,
-    /// The cost of the guess (see `study`).
+    /// The cost of the guess; cheaper guesses are preferred.
     pub cost: f64,
     /// The kinds of pairs that the change concerns.
     pub(super) kinds: &'static [PairKind],
