@@ -177,7 +177,7 @@ impl Film {
     /// Returns all pictures as a film, as `render` draws them.
     pub(crate) fn draw_film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
-        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("the rate of pictures is invalid")?;
+        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("the frame rate is invalid")?;
         let every = self.steps.div_ceil(MAX_PICTURES).max(1);
         let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size, true), Raster::new(size), Vec::new());
@@ -215,9 +215,9 @@ impl Film {
                 host.progress(step, self.scene.step_count());
             }
         }
-        let (buffer, _) = recorder.finish().map_err(|_| {
-            "the trace has more than 1 GiB, which is too much for a browser: use the command `fosssim-oracle simulate`"
-        })?;
+        let (buffer, _) = recorder.finish().map_err(
+            |_| "the trace exceeds 1 GiB, the limit in a browser: use the command `fosssim-oracle simulate`",
+        )?;
         Ok(buffer.0)
     }
 }
