@@ -189,7 +189,7 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
         .collect::<Result<_, _>>()
         .with_context(|| format!("cannot read {}", folder.display()))?;
     if paths.len() > most {
-        bail!("{} has more than {most} entries, which is the limit: grade it in parts", folder.display());
+        bail!("{} exceeds the limit of {most} entries: grade it in parts", folder.display());
     }
     paths.sort();
     Ok(paths)

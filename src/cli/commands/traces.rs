@@ -1,5 +1,5 @@
 //! The option `grade --traces`, which judges existing traces. Each submission is a folder of traces. No program is run,
-//! so no sandbox is needed. The duration of the run and the way in which it ended are unknown.
+//! so no sandbox is needed. The duration of the run and its result are unknown.
 use super::{
     earlier_grades,
     grade_ending::{MAX_HARDEST, exit_code, text, text_detail},
