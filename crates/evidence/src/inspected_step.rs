@@ -158,15 +158,15 @@ impl<'a> Inspector<'a> {
         let step = InspectedStep { step, actual_polynomials: logged, ..InspectedStep::default() };
         // A call whose polynomials were not kept must not look as if they were missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
-        let (asked, right) = (Vec::new(), PolynomialLog::default());
+        let right_polynomials = PolynomialLog::default();
         Self {
             scene,
             mid,
             log,
             wanted_calls: wanted,
             pass: None,
-            reference_calls: asked,
-            right_polynomials: right,
+            reference_calls: Vec::new(),
+            right_polynomials,
             polynomial_places: Vec::new(),
             calls: 0,
             step,
