@@ -118,7 +118,7 @@ impl Explanation {
         }
     }
 
-    /// Creates the explanation that a trace probably belongs to another scene. `has_length` tells whether the trace has
+    /// Creates the explanation that a trace probably belongs to another scene. `has_length` is true if the trace has
     /// the right number of records.
     pub fn for_other_scene(has_length: bool) -> Self {
         Self::with_topic(Self::OTHER_SCENE, ExplanationTopic::Scene { has_length })

@@ -3,7 +3,7 @@ use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The condition that a detection's polynomial describes (collisions.md 2).
+    /// A polynomial of a detection: the kind of pair, and the condition that it describes (collisions.md 2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     pub enum Subject {
         /// Two particles overlap.
