@@ -71,28 +71,28 @@ impl FeatureIndex {
 }
 
 /// Returns the features that all failing scenes have in common; `None` if the evidence for them is weak.
-pub fn locate_failure(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
-    let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failure.is_some()).collect();
+pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
+    let failed: Vec<&TriedScene<'_>> = all_scenes.iter().filter(|one| one.failure.is_some()).collect();
     let first = failed.first()?;
     let mut shared = first.features.clone();
     failed.iter().for_each(|one| shared.retain(|feature| one.features.contains(feature)));
     let mut with: BTreeMap<usize, Vec<FeatureIndex>> = BTreeMap::new();
     for feature in shared {
-        let scenes = tried.iter().filter(|one| one.features.contains(&feature)).count();
+        let scenes = all_scenes.iter().filter(|one| one.features.contains(&feature)).count();
         with.entry(scenes).or_default().push(feature);
     }
     // Because every failing scene contains the value, Ochiai's measure is the square root of `failed / with`. A value
     // is better if fewer scenes contain it.
     let (with, mut features) = with.into_iter().next()?;
-    let looked_at: BTreeSet<Vec<bool>> = tried
+    let looked_at: BTreeSet<Vec<bool>> = all_scenes
         .iter()
         .flat_map(|one| one.features)
         .collect::<BTreeSet<_>>()
         .into_iter()
-        .map(|feature| tried.iter().map(|one| one.features.contains(feature)).collect())
+        .map(|feature| all_scenes.iter().map(|one| one.features.contains(feature)).collect())
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let by_chance = chance_probability(failed.len(), with, tried.len()) * looked_at.len() as f64;
+    let by_chance = chance_probability(failed.len(), with, all_scenes.len()) * looked_at.len() as f64;
     if by_chance >= MAX_CHANCE_PROBABILITY || 2 * failed.len() < with {
         return None;
     }
@@ -110,7 +110,7 @@ pub fn locate_failure(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         features: features.into_iter().map(FeatureIndex::to_feature).collect(),
         failed: failed.len(),
         scenes_with_features: with,
-        scenes_without_features: tried.len() - with,
+        scenes_without_features: all_scenes.len() - with,
         first: first.scene.to_owned(),
         step: first.steps,
     })

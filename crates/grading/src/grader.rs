@@ -162,7 +162,7 @@ impl<'a> SharedGrading<'a> {
 
     /// Returns the features of each scene, from the reference's run. A scene that cannot be simulated to its end has
     /// none.
-    pub(super) fn features(&self, plan: &Plan) -> &[Features] {
+    pub(super) fn load_features(&self, plan: &Plan) -> &[Features] {
         self.features.get_or_init(|| plan.scenes().map(|task| FeatureIndex::for_scene(&task.scene)).collect())
     }
 
@@ -268,7 +268,7 @@ pub(super) enum SceneEvent {
     Begins,
     /// Judging has reached this step. This is not reported for every step.
     Step(u32),
-    /// The scene has its result. The value tells whether it was reused from an earlier grading.
+    /// The scene has its result. The value is true if it was reused from an earlier grading.
     Done(bool),
     /// The last scene is finished, and the submission has this grade.
     Graded(Box<Grade>),

@@ -13,8 +13,8 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes, and adds up the points of the scenes. The flag of each result tells
-/// whether it was reused from an earlier grading.
+/// Shares a group's points evenly among its scenes, and adds up the points of the scenes. The flag of each result is
+/// true if it was reused from an earlier grading.
 ///
 /// An accepted scene gets all its points. With [`Credit::Steps`], a scene with a complete but wrong trace gets the
 /// share of its steps without a finding, but never all its points. Every other scene gets zero points. With
@@ -49,7 +49,7 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
 }
 
 /// Computes the grade from the results of all scenes, in the order of the plan. The build, the sandbox and the times
-/// are still missing in it. `is_timed` tells whether speed counts.
+/// are still missing in it. Speed counts if `is_timed` is true.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = mark_unwritten(results).into_iter();
     let of_group = |planned: &PlannedGroup| {

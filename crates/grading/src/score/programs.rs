@@ -28,7 +28,7 @@ use fosssim_model::assignments::Assignment;
 const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
-    /// Grades the results of all scenes, in the order of the plan. The flag of each result tells whether it was reused.
+    /// Grades the results of all scenes, in the order of the plan. The flag of each result is true if it was reused.
     /// If the suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
@@ -74,7 +74,7 @@ impl SubmissionGrading<'_> {
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
-            grade.located_failure = find_failing_features(&grade, || self.shared.features(plan));
+            grade.located_failure = find_failing_features(&grade, || self.shared.load_features(plan));
         }
         reconcile_explanations(&mut grade);
         if let (Some(show), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
@@ -153,7 +153,7 @@ fn find_failing_features<'a>(grade: &Grade, features: impl FnOnce() -> &'a [Feat
     if failed == 0 || failed == run().count() {
         return None;
     }
-    let tried: Vec<TriedScene<'_>> = grade
+    let scenes: Vec<TriedScene<'_>> = grade
         .scenes()
         .zip(features())
         .filter(|(scene, _)| was_run(&scene.reason) && scene.ended.is_some() && scene.verdict != Verdict::NotRun)
@@ -165,5 +165,5 @@ fn find_failing_features<'a>(grade: &Grade, features: impl FnOnce() -> &'a [Feat
             TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, features: features }
         })
         .collect();
-    locate_failure(&tried)
+    locate_failure(&scenes)
 }
