@@ -199,7 +199,7 @@ fn find_unique_choice(
     wrong: &[bool],
     tolerances: &Tolerances<'_>,
 ) {
-    let (mut goes_on, mut tried) = (true, 0);
+    let (mut goes_on, mut choices) = (true, 0);
     while goes_on {
         goes_on = false;
         for particle in (0..wrong.len()).filter(|particle| wrong[*particle]) {
@@ -208,8 +208,8 @@ fn find_unique_choice(
             if open.is_empty() || open.len() > MAX_PAIRS_PER_PARTICLE {
                 continue;
             }
-            tried += count_choices(open.len());
-            if tried > MAX_CHOICES {
+            choices += count_choices(open.len());
+            if choices > MAX_CHOICES {
                 return;
             }
             let Some(choice) =
