@@ -14,8 +14,8 @@ use super::{
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An explanation of a trace, and the statements that would explain it as well. Each statement has a flag that tells
-/// whether it explains the whole trace.
+/// An explanation of a trace, and the statements that would explain it as well. Each statement has a flag, which is
+/// true if it explains the whole trace.
 #[derive(Clone)]
 pub(super) struct Symptom {
     pub(super) explanation: Explanation,
@@ -113,7 +113,7 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.leading_traces += usize::from(place == 0 && *word == statement);
-                // Of several explanations with the same statement, the one with the longest exact form is used.
+                // If several explanations have the same statement, the one with the longest exact form is used.
                 let rank_of = |one: &Explanation| (one.is_exhaustive(), !one.details.is_empty());
                 let says_more = |reported: &Explanation| rank_of(reported) < rank_of(&symptom.explanation);
                 if *word == statement && evidence.reported.is_none_or(says_more) {

@@ -38,7 +38,7 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
-/// those that it cannot distinguish, and all that would give the same polynomials. Each has a flag that tells whether
+/// those that it cannot distinguish, and all that would give the same polynomials. Each has a flag, which is true if
 /// it explains everything that this explanation is about.
 pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();

@@ -2,7 +2,7 @@
 //!
 //! A row is added if the simulation of the wrong steps then follows the log further. A set is an explanation only if it
 //! reproduces everything, including right steps, and no row can be omitted.
-use super::{applicable_rows::applicable_rows, plausibility, resimulate::ApproachForm, trials::Trials};
+use super::{applicable_rows::applicable_rows, rank_plausibility, resimulate::ApproachForm, trials::Trials};
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use fosssim_student::{Area, Mistake, Row, RowKind};
@@ -52,7 +52,7 @@ pub(super) fn find_row_set(
 
 /// Returns whether a row stands for a function that was not written.
 pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
-    plausibility(row) == 0
+    rank_plausibility(row) == 0
 }
 
 struct Search<'a> {
@@ -266,7 +266,7 @@ impl<'a> Search<'a> {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right_steps.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)
         };
-        rows.sort_by_cached_key(|row| (spoils(row), plausibility(row)));
+        rows.sort_by_cached_key(|row| (spoils(row), rank_plausibility(row)));
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
     }
 

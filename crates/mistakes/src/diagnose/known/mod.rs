@@ -175,7 +175,7 @@ fn find_best_mistake(
     correct: ApproachForm,
 ) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best_scores();
-    scores.sort_by_key(|score| plausibility(score.row));
+    scores.sort_by_key(|score| rank_plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong_steps.first()) else { return (None, false) };
     let complete = best.reproduced == best.samples;
     if scores.iter().any(|score| score.row.kind == RowKind::Variant) {
@@ -191,7 +191,7 @@ fn find_best_mistake(
 
 /// Returns a rank among mistakes that a trace cannot distinguish; a smaller rank is likelier. Unwritten functions come
 /// first, and mistakes that show only in special scenes come last. Rows of equal rank keep the catalogue's order.
-fn plausibility(row: &Row) -> u8 {
+fn rank_plausibility(row: &Row) -> u8 {
     match row.mistake {
         Mistake::ParticleParticleEmpty
         | Mistake::ParticleEdgeEmpty

@@ -60,9 +60,9 @@ impl<'a> Trials<'a> {
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;
-        let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
+        let (logged_count, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {
-            asked.set(asked.get() + 1);
+            logged_count.set(logged_count.get() + 1);
             let goes_on = index < logged.len() && polynomial_matches(coefficients, logged.get(index), &ROUND_OFF);
             if !goes_on && failed.get().is_none() {
                 failed.set(Some(index));
@@ -71,8 +71,8 @@ impl<'a> Trials<'a> {
         };
         let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
         let records = resimulate(&program.0, &kept.before, &mut log);
-        self.used_work.set(self.used_work.get() + asked.get() + log.long_searches);
-        self.remaining_work.set(self.remaining_work.get().saturating_sub(asked.get() + log.long_searches));
+        self.used_work.set(self.used_work.get() + logged_count.get() + log.long_searches);
+        self.remaining_work.set(self.remaining_work.get().saturating_sub(logged_count.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
         match find_first_difference(&records, &kept.records, &self.round_off) {

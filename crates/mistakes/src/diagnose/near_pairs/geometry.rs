@@ -45,17 +45,17 @@ impl<'a> StepGeometry<'a> {
 }
 
 impl<'a> PlacedPair<'a> {
-    /// Returns the numbers of the pair's bodies.
-    pub const fn numbers(&self) -> [usize; 2] {
+    /// Returns the indices of the pair's bodies.
+    pub const fn indices(&self) -> [usize; 2] {
         [self.pair.first as usize, self.pair.second as usize]
     }
 
     pub fn edge(&self) -> Option<&'a Edge> {
-        (self.pair.kind == PairKind::ParticleEdge).then(|| &self.geometry.scene.edges[self.numbers()[1]])
+        (self.pair.kind == PairKind::ParticleEdge).then(|| &self.geometry.scene.edges[self.indices()[1]])
     }
 
     pub fn half_plane(&self) -> Option<&'a HalfPlane> {
-        (self.pair.kind == PairKind::ParticleHalfPlane).then(|| &self.geometry.scene.half_planes[self.numbers()[1]])
+        (self.pair.kind == PairKind::ParticleHalfPlane).then(|| &self.geometry.scene.half_planes[self.indices()[1]])
     }
 
     pub fn position(&self, particle: usize) -> Vec2 {
@@ -64,18 +64,18 @@ impl<'a> PlacedPair<'a> {
 
     /// Returns the first body's center.
     pub fn center(&self) -> Vec2 {
-        self.position(self.numbers()[0])
+        self.position(self.indices()[0])
     }
 
     /// Returns the radius of the first body.
     pub fn radius(&self) -> f64 {
-        self.geometry.scene.particles[self.numbers()[0]].radius
+        self.geometry.scene.particles[self.indices()[0]].radius
     }
 
     /// Returns the radius of the second body, or 0 for a half-plane.
     pub fn other_radius(&self) -> f64 {
         match (self.pair.kind, self.edge()) {
-            (PairKind::ParticleParticle, _) => self.geometry.scene.particles[self.numbers()[1]].radius,
+            (PairKind::ParticleParticle, _) => self.geometry.scene.particles[self.indices()[1]].radius,
             (_, edge) => edge.map_or(0.0, |edge| edge.radius),
         }
     }
@@ -83,7 +83,7 @@ impl<'a> PlacedPair<'a> {
     /// Returns the indices of the pair's bodies in an array of particles and edges. For a half-plane, the second index
     /// is the particle's.
     fn bodies(&self) -> [usize; 2] {
-        let [first, second] = self.numbers();
+        let [first, second] = self.indices();
         match self.pair.kind {
             PairKind::ParticleParticle => [first, second],
             PairKind::ParticleEdge => [first, self.geometry.scene.particles.len() + second],
@@ -104,7 +104,7 @@ impl<'a> PlacedPair<'a> {
     /// Returns whether the pair is near at positions `x`, because its boxes overlap or its half-plane is in reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
-            return length(self.nearest_point(x) - vector_at(x, self.numbers()[0])) < self.radius();
+            return length(self.nearest_point(x) - vector_at(x, self.indices()[0])) < self.radius();
         }
         let [one, other] = self.bodies().map(|body| body_box(self.geometry.scene, x, body));
         (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
@@ -114,7 +114,7 @@ impl<'a> PlacedPair<'a> {
     pub fn is_separating(&self) -> bool {
         let State { positions, velocities } = self.geometry.before;
         let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
-        let distance = |x: &[f64]| length(self.nearest_point(x) - vector_at(x, self.numbers()[0]));
+        let distance = |x: &[f64]| length(self.nearest_point(x) - vector_at(x, self.indices()[0]));
         distance(&later) >= distance(positions)
     }
 
@@ -129,7 +129,7 @@ impl<'a> PlacedPair<'a> {
 
     /// Returns the point of the second body that is nearest to the first one's center.
     fn nearest_point(&self, x: &[f64]) -> Vec2 {
-        let [first, second] = self.numbers();
+        let [first, second] = self.indices();
         let own = vector_at(x, first);
         if let Some(edge) = self.edge() {
             let (from, along) = (vector_at(x, edge.first), vector_at(x, edge.second) - vector_at(x, edge.first));

@@ -89,7 +89,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 }
 
 /// Returns the traits that distinguish pairs that are applied `times` times (0 or 2) from pairs that are applied once.
-/// Of several traits, those with the fewest exceptions are returned.
+/// If there are several, those with the fewest exceptions are returned.
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
@@ -107,7 +107,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
     let mut reported: Vec<(TraitVariant, u64, u64)> = Vec::new();
     for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
-        // Of a row's variants, the strictest one is reported.
+        // Only the strictest variant of a row is reported.
         reported.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         reported.push(one);
     }

@@ -112,19 +112,19 @@ trait_table! {
         "The boxes about {n} steps earlier do not overlap" |pair, _, n| !pair.is_near(&extrapolate_back(pair, n));
     NO_AXIS NO_NUMBER "the pair with exchanged numbers of particle and edge is not near"
         "(edge, particle) is used instead of (particle, edge)" |pair, _, _| is_lost_when_exchanged(pair);
-    NO_AXIS NO_NUMBER "the first body of its kind is involved" "i or j is 0" |pair, _, _| pair.numbers().contains(&0);
+    NO_AXIS NO_NUMBER "the first body of its kind is involved" "i or j is 0" |pair, _, _| pair.indices().contains(&0);
     NO_AXIS NO_NUMBER "the last particle is involved" "i or j is the last number"
         |pair, _, _| body_particles(pair).any(|one| one + 1 == pair.geometry.scene.particles.len());
     NO_AXIS NO_NUMBER "the last edge or half-plane is involved" "Its number is the last one"
         |pair, _, _| match pair.pair.kind {
             PairKind::ParticleParticle => false,
-            PairKind::ParticleEdge => pair.numbers()[1] + 1 == pair.geometry.scene.edges.len(),
-            PairKind::ParticleHalfPlane => pair.numbers()[1] + 1 == pair.geometry.scene.half_planes.len(),
+            PairKind::ParticleEdge => pair.indices()[1] + 1 == pair.geometry.scene.edges.len(),
+            PairKind::ParticleHalfPlane => pair.indices()[1] + 1 == pair.geometry.scene.half_planes.len(),
         };
     NO_AXIS NO_NUMBER "the edge or half-plane is not the first one" "Its number is greater than 0"
-        |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.numbers()[1] > 0;
+        |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.indices()[1] > 0;
     NO_AXIS TRAIT_COUNTS "the numbers of the particles are far apart" "|i - j| is greater than {n}"
-        |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && distance(pair.numbers()) > n;
+        |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && distance(pair.indices()) > n;
     ANY_AXIS NO_NUMBER "the bodies are on different sides of zero {axis}" "0 is between their {axis}"
         |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
     ANY_AXIS TRAIT_LENGTHS "a multiple of a round number is between the bodies {axis}"
@@ -203,7 +203,7 @@ trait_table! {
 /// Returns the particles that are themselves bodies of the pair.
 fn body_particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     let bodies = if pair.pair.kind == PairKind::ParticleParticle { 2 } else { 1 };
-    pair.numbers().into_iter().take(bodies)
+    pair.indices().into_iter().take(bodies)
 }
 
 /// Returns all particles of the pair, including the ends of an edge.
@@ -220,7 +220,7 @@ fn extrapolate_back(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
 
 fn is_lost_when_exchanged(pair: &PlacedPair<'_>) -> bool {
     let scene = pair.geometry.scene;
-    let [particle, edge] = pair.numbers();
+    let [particle, edge] = pair.indices();
     let mut other = *pair;
     (other.pair.first, other.pair.second) = (pair.pair.second, pair.pair.first);
     let is_there = edge < scene.particles.len() && particle < scene.edges.len();
