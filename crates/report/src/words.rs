@@ -70,13 +70,13 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
                 .to_owned(),
         );
     }
-    if let Some(told) = &result.disclosure {
-        lines.extend(told.official().first_divergence.as_ref().map(describe_first));
-        lines.extend(describe_counts(told.official()));
-        if let Some(damage) = &told.damage {
+    if let Some(disclosure) = &result.disclosure {
+        lines.extend(disclosure.official().first_divergence.as_ref().map(describe_first));
+        lines.extend(describe_counts(disclosure.official()));
+        if let Some(damage) = &disclosure.damage {
             lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.what));
         }
-        if told.trailing_bytes {
+        if disclosure.trailing_bytes {
             lines.push("bytes follow the last record".to_owned());
         }
     }

@@ -74,7 +74,7 @@ impl Observer for CollisionWalk<'_> {
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         let Detection { pass, pair, decision, .. } = *detection;
-        if self.pair.is_some_and(|(asked, when)| asked == pair && when.is_none_or(|when| when == pass)) {
+        if self.pair.is_some_and(|(requested, when)| requested == pair && when.is_none_or(|when| when == pass)) {
             self.text.extend(self.detection_text(detection));
             self.pair = None;
         }

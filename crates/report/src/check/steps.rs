@@ -152,7 +152,7 @@ fn find_requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(
     match &check.steps.shown_steps {
         StepChoice::None => None,
         StepChoice::All => Some(steps.kept_steps.iter().map(|step| (step.number, Some(step))).collect()),
-        StepChoice::Selected(asked) => Some(asked.iter().map(|&number| (number, found(number))).collect()),
+        StepChoice::Selected(numbers) => Some(numbers.iter().map(|&number| (number, found(number))).collect()),
     }
 }
 
