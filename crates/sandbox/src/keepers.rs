@@ -76,10 +76,10 @@ impl Keeper {
     pub(super) fn request_run(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::to_path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
-        let (answers, told) = io::pipe()?;
+        let (answers, writer) = io::pipe()?;
         let mut packet = wire::encode_packet(order)?;
         files.iter().for_each(|(_, content)| packet.extend_from_slice(content));
-        sys::send_descriptors(&self.socket, wire::RUN_BYTE, [theirs.as_fd(), told.as_fd(), folder.as_fd()])?;
+        sys::send_descriptors(&self.socket, wire::RUN_BYTE, [theirs.as_fd(), writer.as_fd(), folder.as_fd()])?;
         (&self.socket).write_all(&packet)?;
         Ok((control, OwnedFd::from(answers).into()))
     }

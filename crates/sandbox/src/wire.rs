@@ -29,7 +29,7 @@ const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 /// The byte that requests a run from a keeper. It is sent with three descriptors: the channel for commands, the channel
 /// for answers, and the working folder on disk.
 pub(super) const RUN_BYTE: u8 = b'r';
-/// The byte that tells the grader of a working folder in memory. It is sent with the folder's descriptor.
+/// The byte that announces a working folder in memory to the grader. It is sent with the folder's descriptor.
 pub(super) const FOLDER_BYTE: u8 = b'f';
 
 /// A path or an argument, as bytes.
@@ -65,7 +65,7 @@ pub(super) struct ActiveLayers {
     pub(super) group: bool,
 }
 
-/// The order for a run, which tells the supervisor everything about it.
+/// The order for a run, with all that the supervisor must know about the run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct RunOrder {
     pub(super) program: RawBytes,

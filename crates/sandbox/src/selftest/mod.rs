@@ -251,19 +251,19 @@ impl TestSetup<'_> {
         if program.is_file() {
             return Ok(program);
         }
-        let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
+        let describe = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
-        write_file(&path, source.contents()).map_err(said)?;
+        write_file(&path, source.contents()).map_err(describe)?;
         // The program gets its name after it is complete, so that an incomplete one is never used.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique_name()));
         let output =
-            Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
+            Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(describe)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
             let lines = text.lines().take(3).collect::<Vec<_>>();
             return Err(format!("the attack does not compile here: {}", lines.join(" ")));
         }
-        std::fs::rename(&fresh, &program).map_err(said)?;
+        std::fs::rename(&fresh, &program).map_err(describe)?;
         Ok(program)
     }
 }

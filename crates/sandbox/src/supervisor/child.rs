@@ -173,7 +173,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
 /// Returns the purpose of the filters for a child with the process number `number`.
-pub(super) fn purpose(order: &RunOrder, own_user: bool, entry_file: Option<u64>, number: i32) -> Purpose {
+pub(super) fn find_purpose(order: &RunOrder, own_user: bool, entry_file: Option<u64>, number: i32) -> Purpose {
     let layers = order.layers;
     Purpose {
         tools: order.allows_tools,
@@ -190,7 +190,7 @@ pub(super) fn purpose(order: &RunOrder, own_user: bool, entry_file: Option<u64>,
 fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     let layers = plan.order.layers;
     let entry_file = plan.entry_file.as_ref().map(|file| file.as_raw_fd() as u64);
-    let purpose = purpose(&plan.order, plan.user.is_some(), entry_file, std::process::id() as i32);
+    let purpose = find_purpose(&plan.order, plan.user.is_some(), entry_file, std::process::id() as i32);
     let compiled = match plan.filters.as_ref().filter(|filters| filters.0 == purpose) {
         Some(filters) => filters.clone(),
         None => Rc::new((purpose, filter::compile_filters(purpose)?)),

@@ -44,7 +44,7 @@ impl PreparedRun {
     /// must have only one thread.
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || file_rules::AllowedPlaces::for_order(order).with_high_numbers();
-        let purpose = child::purpose(order, order.layers.own_user, None, number);
+        let purpose = child::find_purpose(order, order.layers.own_user, None, number);
         let filters = filter::compile_filters(purpose).map_err(failure_at("compile the system call filter"))?;
         let places = order.layers.landlock.then(open).flatten();
         let filters = Some(child::Filters::new((purpose, filters)));
