@@ -257,7 +257,7 @@ pub fn check_archive(file: &Path, form: Option<&str>, accepted: &str, program: O
                 }
                 (None, true) => Ok(Form::Traces),
                 (Some(Form::Traces), true) => Ok(Form::Traces),
-                (said, _) => check_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
+                (declared, _) => check_program(&files, program).map(|()| declared.unwrap_or(Form::Sources)),
             }
         }
         Err(ArchiveError::Unknown(found)) if form.is_none() => Err(format!("expected {accepted}, but found {found}")),

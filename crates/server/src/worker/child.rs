@@ -55,7 +55,7 @@ impl Child {
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The parent ended before the kernel was told to kill this process, so it must end by itself.
+                // The parent ended before the kernel was instructed to kill this process, so it must end by itself.
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }

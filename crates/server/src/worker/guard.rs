@@ -37,7 +37,7 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
             -1 => Err(io::Error::last_os_error()),
             0 => {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The guard ended before the kernel was told to kill this process.
+                // The guard ended before the kernel was instructed to kill this process.
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }

@@ -97,7 +97,7 @@ impl Admin {
     }
 
     /// Returns a page of the accounts whose login or name contains `search`, in the order of logins, from the first one
-    /// after `after`. The flag tells whether there are more.
+    /// after `after`. The flag is true if there are more.
     pub async fn accounts_page(&self, search: &str, after: &str) -> Result<(Vec<ListedAccount>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT login, name, is_admin,

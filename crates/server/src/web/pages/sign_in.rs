@@ -32,7 +32,7 @@ struct SignIn {
 
 #[derive(Template)]
 #[template(path = "welcome.html")]
-struct Welcome {
+struct WelcomePage {
     frame: PageFrame,
     /// The name and the courses of the link's owner; `None` if the link can no longer be used.
     owner: Option<(String, Option<String>)>,
@@ -122,7 +122,7 @@ pub(super) async fn sign_in_by_token(visitor: Visitor, Fields(form): Fields<Toke
 
 /// Shows the page of a sign-in link. Opening the link does not sign in yet, because mail programs also open links.
 pub(super) async fn show_welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
-    render(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
+    render(&WelcomePage { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
 }
 
 pub(super) async fn use_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
