@@ -81,7 +81,7 @@ impl ExplanationParts {
 /// not tried.
 fn describe_evidence(reproduced: u64, samples: u64) -> String {
     match samples {
-        1 if reproduced == 1 => "reproduces the wrong step tried".to_owned(),
+        1 if reproduced == 1 => "reproduces the only wrong step tried".to_owned(),
         _ if reproduced == samples => format!("reproduces all {samples} wrong steps tried"),
         _ => format!("reproduces {reproduced} of {samples} wrong steps tried"),
     }

@@ -188,7 +188,11 @@ mod bucket {
             assert!(crate::support::bytes(&store, &large_one).await == large);
             assert!(!store.has(&Digest::from_bytes(b"none")).await.expect("an answer"));
             let long = Duration::from_secs(3600);
-            assert_eq!(store.give_up(long, |digests| named(digests, |_| false)).await.expect("done"), 0, "too young");
+            assert_eq!(
+                store.remove_unreferenced(long, |digests| named(digests, |_| false)).await.expect("done"),
+                0,
+                "too young"
+            );
             // Neither file is referenced for a moment: both are moved to the trash, and can still be read.
             let aside = Duration::ZERO;
             let mut count = 0;
@@ -198,7 +202,7 @@ mod bucket {
                     *name == small && count > 1
                 })
             };
-            assert_eq!(store.give_up(aside, named_later).await.expect("done"), 1, "the large one alone");
+            assert_eq!(store.remove_unreferenced(aside, named_later).await.expect("done"), 1, "the large one alone");
             assert!(!store.has(&large_one).await.expect("an answer"));
             assert_eq!(crate::support::bytes(&store, &small).await, b"small");
         });

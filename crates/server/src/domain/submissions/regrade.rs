@@ -328,7 +328,7 @@ impl FromRow for Change {
 /// Returns sentences about the values that differ.
 fn list_changed<const N: usize>(values: [(&str, String, String); N]) -> impl Iterator<Item = String> {
     let changed = values.into_iter().filter(|(_, old, new)| old != new);
-    changed.map(|(what, old, new)| format!("{what}: {old} before, {new} now"))
+    changed.map(|(what, old, new)| format!("{what}: from {old} to {new}"))
 }
 
 /// Returns the name of rules in settings.
@@ -336,7 +336,7 @@ fn describe_rules(rules: &Option<String>) -> String {
     match rules.as_deref() {
         None => "the suite's",
         Some("parity") => "the original's",
-        Some("both") => "the original's rules, with the fair rules shown",
+        Some("both") => "the original's with the fair ones shown",
         Some(other) => other,
     }
     .to_owned()

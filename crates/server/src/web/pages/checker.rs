@@ -9,7 +9,12 @@ use axum::{
 
 /// Returns the page. Its own policy is stricter than that of other pages: it allows only the page's WebAssembly module.
 pub(super) async fn show_page(State(app): State<App>) -> Result<Response, Problem> {
-    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page (the grader was built without it)"))?;
+    let missing = || Problem {
+        detail: "this server was installed without the page that checks traces".to_owned(),
+        remedy: "ask the server's administrator".to_owned(),
+        ..Problem::not_found("")
+    };
+    let page = app.checker.clone().ok_or_else(missing)?;
     let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();
     if let Some(policy) = policy {

@@ -12,8 +12,8 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
-/// The submission to compare with. A number is the submission's number on this server. A login means this student's
-/// last submission.
+/// The submission to compare with: a login means this student's last graded submission, and a number means the same
+/// student's submission of this number.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]
@@ -63,10 +63,10 @@ pub(super) async fn show_page(
 ) -> Page {
     let first = staff.submission(id).await?;
     let assignment = staff.assignment(&first.assignment).await?;
-    let other = match query.with.trim().parse() {
-        Ok(number) => Some(staff.submission(number).await?),
-        Err(_) => staff.student_history(&assignment.slug, query.with.trim()).await?.submissions.into_iter().next(),
-    };
+    let number: Option<i64> = query.with.trim().parse().ok();
+    let login = if number.is_some() { &first.login } else { query.with.trim() };
+    let mut history = staff.student_history(&assignment.slug, login).await?.submissions.into_iter();
+    let other = history.find(|one| one.grade.is_some() && number.is_none_or(|number| one.number == number));
     let missing = || {
         let detail = format!("there is no graded submission of {:?}", query.with.trim());
         let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();

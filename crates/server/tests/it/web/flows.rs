@@ -215,7 +215,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert_eq!(changes.len(), 1, "{preview}");
     assert_eq!(changes[0]["submission"], whole);
     assert_eq!([&changes[0]["old_points"], &changes[0]["new_points"]], ["40", "20"]);
-    assert_eq!(changes[0]["why"], serde_json::json!(["rules: the suite's before, the original's now"]));
+    assert_eq!(changes[0]["why"], serde_json::json!(["rules: from the suite's to the original's"]));
     assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "40");
     // A submission that arrives in the meantime is graded with the old settings, and is part of the regrade before it
     // can be applied.
@@ -225,12 +225,12 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert_eq!(problem["detail"], "1 submission arrived in the meantime, and is being graded");
     assert_eq!(finished()["submissions"], 3);
     let page = admin.get(&format!("/c/physics/a/m1/regrades/{id}")).expect(200).text();
-    assert_eq!(page.matches("rules: the suite").count(), 1, "the reason is there once: {page}");
+    assert_eq!(page.matches("rules: from the suite").count(), 1, "the reason is there once: {page}");
     assert!(page.contains("settings also change") && !page.contains("The grader failed on"), "{page}");
     let applied = admin.post_json(&format!("{base}/{id}/apply"), "").expect(200).json();
     assert_eq!(applied["state"], "applied");
     let log = admin.get("/c/physics/audit").expect(200).text();
-    assert!(log.contains(&format!("applied regrade {id}; rules: the suite")), "{log}");
+    assert!(log.contains(&format!("applied regrade {id}; rules: from the suite")), "{log}");
     assert_eq!(applied["changes"].as_array().expect("a list").len(), 2, "what it changed can still be seen");
     admin.post_json(&format!("{base}/{id}/apply"), "").expect(409);
     admin.post_json(&format!("{base}/{id}/discard"), "").expect(409);
