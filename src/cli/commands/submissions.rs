@@ -325,7 +325,7 @@ mod tests {
             fs::write(folder.path().join(name), "").unwrap();
         }
         assert_eq!(list_entries(folder.path(), 3).unwrap(), ["a", "b", "c"].map(|name| folder.path().join(name)));
-        assert!(list_entries(folder.path(), 2).unwrap_err().to_string().contains("more than 2 entries"));
+        assert!(list_entries(folder.path(), 2).unwrap_err().to_string().contains("the limit of 2 entries"));
     }
 
     #[test]

@@ -135,7 +135,7 @@ mod tests {
             found.map(|found| found.len())
         };
         assert_eq!(found("*.xml", 3, 24), Ok(3));
-        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("more than 10000 scenes"));
+        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("the limit of 10000 scenes"));
         assert!(found("*.xml", 3, 23).expect_err("too large").contains("more than 268435456 bytes"));
         std::fs::File::create(folder.path().join("hole")).expect("a file").set_len(1 << 40).expect("a hole");
         std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero")).expect("a link");

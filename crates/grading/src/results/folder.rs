@@ -256,7 +256,7 @@ mod tests {
         // A line without an end uses neither memory nor time, and nothing is changed.
         journal.set_len(4 << 30).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("damaged").to_string();
-        assert!(refused.contains("a line of more than 16777216 bytes"), "{refused}");
+        assert!(refused.contains("the limit of 16777216 bytes"), "{refused}");
         assert_eq!(journal.metadata().expect("data").len(), 4 << 30);
         assert!(FolderResults::open(folder.path(), true).is_ok(), "what is forgotten is not read");
     }
