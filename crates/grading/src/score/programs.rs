@@ -162,7 +162,7 @@ fn find_failing_features<'a>(grade: &Grade, features: impl FnOnce() -> &'a [Feat
                 Reason::Program(reached) => reached.steps,
                 _ => 0,
             };
-            TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, features: features }
+            TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, features }
         })
         .collect();
     locate_failure(&scenes)

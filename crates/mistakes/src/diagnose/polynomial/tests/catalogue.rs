@@ -225,7 +225,7 @@ fn odd_weights_from_few_samples_are_not_named() {
     let multiplied = |motion: &PairMotion| {
         let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
         let mut lists = particle_lists(motion);
-        lists[0][2] += (r1 * r2).powi(2) - (r1 + r2).powi(2);
+        lists[0][2] += r1 * r2 * r1 * r2 - (r1 + r2) * (r1 + r2);
         lists
     };
     let few = samples(PairKind::ParticleParticle, 3, particle_lists).into_iter();
