@@ -46,8 +46,8 @@ to it.
 With --output, results are stored in the folder immediately. (For several submissions, the default folder is \
 fosssim-grades.) An interrupted grading continues where it stopped. A scene is run again only if the program, the \
 scene or the rules changed. The folder gets index.html (a class) or report.html to look at, grades.csv, \
-grades.jsonl, scenes.csv, class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part \
-are not a grade.")]
+grades.jsonl, scenes.csv, class.txt and a log per run. With --scene or --failed it gets only the logs: points of a \
+part are not a grade.")]
 pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
