@@ -11,12 +11,11 @@ pub mod topic;
 pub mod wrong_pairs;
 
 pub use area::Area;
-pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
+pub use detail::{Detail, PolynomialDetail, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity,
-    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    ChangeCause, ChangeRatio, ChangedParticles, NanStage, NonFiniteValue, Quantity, StageFault, StepStage, WrongChange,
+    WrongDecisions, WrongGeometric, WrongNumber, WrongVectors,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
@@ -212,7 +211,7 @@ impl Explanation {
     pub const fn is_vague(&self) -> bool {
         matches!(
             self.topic,
-            ExplanationTopic::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts)
+            ExplanationTopic::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::Responses)
         )
     }
 
