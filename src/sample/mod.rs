@@ -1,7 +1,7 @@
 //! The sample, which acts as a student's submission.
 //!
 //! It implements the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. It
-//! simulates with the second simulator, `student`. It never uses `sim`, which judges. `fosssim-oracle sample` runs it,
+//! simulates with the second simulator, `student`, and not with `sim`, which judges. `fosssim-oracle sample` runs it,
 //! and so does every copy of the program with a [pinned](pinned_mistake) mistake.
 #![expect(
     clippy::disallowed_methods,

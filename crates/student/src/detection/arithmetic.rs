@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use fosssim_num::vector::Vec2;
 
 use crate::assignments::t2m2::{Subject, formulas::readings};
-use fosssim_model::sim::PointMotion;
+use fosssim_model::sim::{PairMotion, PointMotion};
 
 /// The numbers of a program.
 pub trait Number:
@@ -76,8 +76,21 @@ fn evaluate<N: Number>(subject: Subject, letters: &[N]) -> Vec<f64> {
     sums.iter().map(|sum| sum.to_double()).collect()
 }
 
+/// Returns the polynomials of a pair.
+pub fn polynomials<N: Number>(motion: &PairMotion) -> Vec<Vec<f64>> {
+    match *motion {
+        PairMotion::Particles { centers, radii } => particle_particle::<N>(&centers, radii),
+        PairMotion::Edge { center, ends: [first, second], radii } => {
+            particle_edge::<N>(&[center, first, second], radii)
+        }
+        PairMotion::HalfPlane { center, radius, point, normal } => {
+            particle_half_plane::<N>(&center, radius, point, normal)
+        }
+    }
+}
+
 /// Returns the overlap and approach of two particles.
-pub fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
+fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let x: Vector<N> = subtract(to_vector(two.start), to_vector(one.start));
     let d: Vector<N> = subtract(to_vector(two.shift), to_vector(one.shift));
     let reach = N::from(radii[0]) + N::from(radii[1]);
@@ -86,7 +99,7 @@ pub fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 
 }
 
 /// Returns the overlap and approach of a particle and a half-plane.
-pub fn particle_half_plane<N: Number>(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+fn particle_half_plane<N: Number>(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = to_vector(normal);
     let offset = subtract(to_vector(point), to_vector(one.start));
     let radius = N::from(radius);
@@ -95,7 +108,7 @@ pub fn particle_half_plane<N: Number>(one: &PointMotion, radius: f64, point: Vec
 }
 
 /// Returns overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
-pub fn particle_edge<N: Number>(bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
+fn particle_edge<N: Number>(bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let [one, two, three] = bodies;
     let between = |a: Vec2, b: Vec2| -> Vector<N> { subtract(to_vector(a), to_vector(b)) };
     let (x12, x32) = (between(one.start, two.start), between(three.start, two.start));

@@ -1,7 +1,5 @@
 //! Correct programs that compute coefficients indirectly: through the Bernstein basis, or from values at several times.
-use fosssim_num::vector::Vec2;
-
-use fosssim_model::sim::PointMotion;
+use fosssim_model::sim::PairMotion;
 
 /// Converts a power basis list (highest power first) to the Bernstein basis over the step, and back.
 pub fn convert_through_bernstein(list: &[f64]) -> Vec<f64> {
@@ -51,43 +49,34 @@ fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     p
 }
 
-/// Returns the overlap and approach of two particles, from values.
-pub fn particle_particle([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
-    let n = |t| two.position_at(t) - one.position_at(t);
-    let reach = radii[0] + radii[1];
-    let closing = one.shift - two.shift;
-    vec![interpolate(2, |t| reach * reach - n(t).dot(&n(t))), interpolate(1, |t| closing.dot(&n(t)))]
-}
-
-/// Returns the overlap and approach of a particle and a half-plane, from values.
-pub fn particle_half_plane(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
-    let away = |t| (point - one.position_at(t)).dot(&normal);
-    let reach = radius * radius * normal.dot(&normal);
-    let speed = one.shift.dot(&normal);
-    vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
-}
-
-/// Returns the overlap of a particle and an edge, from values.
-pub fn overlap_from_values(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
-    interpolate(4, |t| overlap(bodies, square, t))
-}
-
-/// Returns the overlap of a particle and an edge at one time.
-fn overlap([one, two, three]: &[PointMotion; 3], square: f64, t: f64) -> f64 {
-    let (along, beside) = (three.position_at(t) - two.position_at(t), one.position_at(t) - two.position_at(t));
-    let cross = along.x * beside.y - along.y * beside.x;
-    square * along.dot(&along) - cross * cross
-}
-
-/// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach is the supplied one.
-pub fn particle_edge(bodies @ [one, two, three]: &[PointMotion; 3], square: f64) -> [Vec<f64>; 3] {
-    [
-        overlap_from_values(bodies, square),
-        interpolate(2, |t| (one.position_at(t) - two.position_at(t)).dot(&(three.position_at(t) - two.position_at(t)))),
-        interpolate(2, |t| {
-            (one.position_at(t) - three.position_at(t)).dot(&(two.position_at(t) - three.position_at(t)))
-        }),
-    ]
+/// Returns the polynomials of a pair from their values; for a particle and an edge, all but the approach.
+pub fn polynomials(motion: &PairMotion) -> Vec<Vec<f64>> {
+    match *motion {
+        PairMotion::Particles { centers: [one, two], radii } => {
+            let n = |t| two.position_at(t) - one.position_at(t);
+            let (reach, closing) = (radii[0] + radii[1], one.shift - two.shift);
+            vec![interpolate(2, |t| reach * reach - n(t).dot(&n(t))), interpolate(1, |t| closing.dot(&n(t)))]
+        }
+        PairMotion::HalfPlane { center, radius, point, normal } => {
+            let away = |t| (point - center.position_at(t)).dot(&normal);
+            let (reach, speed) = (radius * radius * normal.dot(&normal), center.shift.dot(&normal));
+            vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
+        }
+        PairMotion::Edge { center, ends: [first, second], radii } => {
+            let [x1, x2, x3] = [center, first, second].map(|body| move |t| body.position_at(t));
+            let (along, beside) = (|t| x3(t) - x2(t), |t| x1(t) - x2(t));
+            let square = (radii[0] + radii[1]) * (radii[0] + radii[1]);
+            let overlap = |t| {
+                let cross = along(t).x * beside(t).y - along(t).y * beside(t).x;
+                square * along(t).dot(&along(t)) - cross * cross
+            };
+            vec![
+                interpolate(4, overlap),
+                interpolate(2, |t| beside(t).dot(&along(t))),
+                interpolate(2, |t| (x1(t) - x3(t)).dot(&(x2(t) - x3(t)))),
+            ]
+        }
+    }
 }
 
 #[cfg(test)]

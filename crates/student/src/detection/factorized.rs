@@ -52,3 +52,11 @@ pub fn quintic(bodies: &[PointMotion; 3]) -> Vec<f64> {
     let inner: Vec<f64> = first.iter().zip(&second).map(|(first, second)| 2.0 * first - second).collect();
     product(&q, &inner).iter().map(|coefficient| -0.5 * coefficient).collect()
 }
+
+/// Returns alpha < 1, from the letters of the other polynomials.
+pub fn alpha_below_one([one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
+    let (x12, x32) = (one.start - two.start, three.start - two.start);
+    let (d12, d32) = (one.shift - two.shift, three.shift - two.shift);
+    let slope = x12.dot(&d32) + d12.dot(&x32);
+    vec![d32.dot(&d32) - d12.dot(&d32), 2.0 * d32.dot(&x32) - slope, x32.dot(&x32) - x12.dot(&x32)]
+}

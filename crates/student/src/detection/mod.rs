@@ -28,7 +28,7 @@ mod normalization;
 mod particle_edge;
 mod particle_half_plane;
 mod particle_particle;
-mod quintic;
+mod variants;
 mod wide_numbers;
 
 use frame::Axes;
@@ -110,15 +110,7 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
 
 /// Returns the polynomials that must be positive together, highest power first.
 fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
-    let mut lists = match motion {
-        PairMotion::Particles { centers, radii } => particle_particle::polynomials(student, centers, *radii),
-        PairMotion::Edge { center, ends: [first, second], radii } => {
-            particle_edge::polynomials(student, &[*center, *first, *second], *radii)
-        }
-        PairMotion::HalfPlane { center, radius, point, normal } => {
-            particle_half_plane::polynomials(student, center, *radius, *point, *normal)
-        }
-    };
+    let mut lists = variants::polynomials(student, motion);
     let kind = motion.kind();
     if let Some(edit) = student.mistake_in(&[FORMULA_AREAS[kind as usize]]).and_then(Mistake::edit) {
         let approach = usize::from(student.has_right_approach());
