@@ -53,6 +53,8 @@ pub(crate) struct SceneInFile {
     pub(crate) scene: String,
     pub(crate) code: String,
     pub(crate) verdict: String,
+    /// The scene's result as a sentence.
+    pub(crate) summary: String,
 }
 
 impl GradeInFile {

@@ -31,7 +31,7 @@ pub use roles::staff::{AssignmentChange, NewSuite, Staff, UploadedSuite};
 pub use roles::visitor::{Secrets, Visitor};
 pub use submissions::attempt_changes::{AttemptChange, FailedScenes, StoredResult};
 pub use submissions::mark::{Overview, Request, StudentHistory};
-pub use submissions::regrade::{Change, Regrade, RegradeState};
+pub use submissions::regrade::{Change, Regrade, RegradeState, StaffGrade};
 pub use submissions::repeated_grading::EnqueuedJobs;
 pub use submissions::standings::{CountedSubmission, ShortStanding, Standing};
 pub use submissions::submit::{SubmitResult, Upload};

@@ -1,5 +1,8 @@
 //! Reads the parts of a grader's result that the service uses. The other parts are only displayed.
-use crate::{grade_file::GradeFile, task::Outcome};
+use crate::{
+    grade_file::{GradeFile, SceneInFile},
+    task::Outcome,
+};
 use std::{fs, path::Path};
 
 /// The versions of the schema of `grade.json` that are supported. During an upgrade, a grader may be older than the
@@ -25,7 +28,10 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
     let likely = || grade.likely_mistakes.first().map(|mistake| &mistake.text);
-    if let Some(reason) = grade.unfit.as_ref().or_else(likely) {
+    // No mistake explains a program that crashed or was stopped; the first such scene describes how it ended.
+    let has_ended = |scene: &&&SceneInFile| scene.code == grade.code && !["AC", "WA"].contains(&scene.code.as_str());
+    let ending = || scenes.iter().find(has_ended).map(|scene| &scene.summary).filter(|words| !words.is_empty());
+    if let Some(reason) = grade.unfit.as_ref().or_else(likely).or_else(ending) {
         summary = format!("{summary}; {reason}");
     }
     Ok(Outcome {

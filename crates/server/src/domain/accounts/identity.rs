@@ -24,7 +24,7 @@ const LINK_LIFETIME: i64 = 7 * 24 * 3600 * 1000;
 const RECENT_AGE: i64 = 12 * 3600 * 1000;
 
 /// The time between two updates of a session's last use, in milliseconds.
-const SEEN_INTERVAL: i64 = 3600 * 1000;
+const SEEN_INTERVAL: i64 = 300 * 1000;
 
 /// The prefix of people's tokens, by which people and secret scanners recognize such a token.
 pub(in crate::domain) const PERSON_PREFIX: &str = "fso_";

@@ -2,7 +2,7 @@
 //! staff applies the regrade; it can also be discarded.
 use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
 use crate::{
-    db::{DbError, FromRow, Row, Transaction, read_row},
+    db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     problem::{Problem, ensure},
     task::{JUDGE_ERROR, Task},
     values,
@@ -46,6 +46,11 @@ pub struct Regrade {
     pub left: usize,
     /// The number of submissions on which the grader failed. Their old grades stay.
     pub failed: usize,
+    /// The number of submissions that arrived after the regrade began and are not in it. It is 0 unless the regrade is
+    /// open.
+    pub arrived: usize,
+    /// The grades that staff set, up to the maximum number of changes. They stay, even if the maximum changes.
+    pub set_by_staff: Vec<StaffGrade>,
     /// The number of grades that change.
     pub changed: usize,
     /// The number of submissions that get more points.
@@ -67,6 +72,25 @@ impl Regrade {
     }
 }
 
+/// A grade that staff set, which a regrade does not change.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct StaffGrade {
+    /// The submission's number on this server.
+    pub submission: i64,
+    /// The submission's number among its owner's submissions to this assignment.
+    pub number: i64,
+    /// The login of the owner.
+    pub login: String,
+    /// The points that staff set.
+    pub points: String,
+    /// The maximum number of points before the regrade.
+    pub old_max_points: Option<String>,
+    /// The maximum number of points that the regrade gives.
+    pub new_max_points: Option<String>,
+}
+
+from_row! { StaffGrade { submission, number, login, points, old_max_points, new_max_points } }
+
 /// A grade that the regrade changes, with the likely reasons.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Change {
@@ -80,12 +104,16 @@ pub struct Change {
     pub old_code: Option<String>,
     /// The points that count at present.
     pub old_points: Option<String>,
+    /// The maximum number of points at present.
+    pub old_max_points: Option<String>,
     /// The result that counts at present, in one line.
     pub old_summary: Option<String>,
     /// The code of the regrade's verdict.
     pub new_code: String,
     /// The points that the regrade gives.
     pub new_points: Option<String>,
+    /// The maximum number of points that the regrade gives.
+    pub new_max_points: Option<String>,
     /// The regrade's result, in one line.
     pub new_summary: String,
     /// The differences between the two gradings that may explain the change, such as another version, suite, rule book
@@ -151,6 +179,19 @@ impl Staff {
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
+    }
+
+    /// Adds the submissions that arrived after an open regrade began.
+    ///
+    /// # Errors
+    ///
+    /// Fails if there is no such regrade, or it was applied or discarded.
+    pub async fn regrade_newcomers(&self, slug: &str, id: i64) -> Result<(), Problem> {
+        let assignment = self.assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        let (settings, _) = self.lock_open(&mut transaction, &assignment, id).await?;
+        campaign::enqueue_missing(&mut transaction, id, &Assignment { settings, ..assignment }).await?;
+        Ok(self.app.0.notifier.commit(transaction).await?)
     }
 
     /// Makes the results of a regrade count, and copies its grading settings to the assignment. If the grader failed on
@@ -251,6 +292,8 @@ impl FromRow for Regrade {
             submissions: 0,
             left: 0,
             failed: 0,
+            arrived: 0,
+            set_by_staff: Vec::new(),
             changed: 0,
             more: 0,
             fewer: 0,
@@ -260,10 +303,10 @@ impl FromRow for Regrade {
     }
 }
 
-/// Selects the jobs of a regrade whose results differ from the results that count. After the regrade is applied, they
-/// are compared with the results that counted before.
-macro_rules! changes {
-    ($columns:literal, $rest:literal) => {
+/// Selects the jobs of a regrade, with their results and the results that count. After the regrade is applied, these
+/// are the results that counted before.
+macro_rules! regraded {
+    ($columns:literal, $rest:expr) => {
         concat!(
             "SELECT ",
             $columns,
@@ -275,9 +318,20 @@ macro_rules! changes {
              LEFT JOIN grade_change ON grade_change.submission = submission.id AND grade_change.campaign = job.campaign
              LEFT JOIN result AS old ON old.id =
                 CASE WHEN grade_change.id IS NULL THEN grade.result ELSE grade_change.old_result END
-             WHERE job.campaign = ? AND new.code <> 'JE' AND (old.id IS NULL OR old.code <> new.code
-                OR coalesce(old.points, '') <> coalesce(new.points, '')) ",
+             LEFT JOIN mark ON mark.submission = submission.id
+             WHERE job.campaign = ? AND new.code <> 'JE' ",
             $rest
+        )
+    };
+    // Selects the grades that differ. The points that staff set stay.
+    (changed $columns:literal, $rest:literal) => {
+        regraded!(
+            $columns,
+            concat!(
+                "AND mark.points IS NULL AND (old.id IS NULL OR old.code <> new.code
+                    OR coalesce(old.points, '') <> coalesce(new.points, '')) ",
+                $rest
+            )
         )
     };
 }
@@ -295,19 +349,30 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     regrade.submissions = count(jobs.int("n")?);
     regrade.left = count(jobs.int("waiting")?);
     regrade.failed = count(failed.int("n")?);
-    let statement = changes!(
-        "count(*) AS n, count(CASE WHEN CAST(new.points AS REAL) > CAST(old.points AS REAL) THEN 1 END) AS more,
+    if regrade.state == RegradeState::Open {
+        let statement = "SELECT count(*) AS n FROM submission WHERE assignment = ? AND removed_at IS NULL
+            AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)";
+        regrade.arrived = count(transaction.one(statement, values![assignment.id, id]).await?.int("n")?);
+    }
+    let statement = regraded!(
+        "job.submission, submission.number, account.login, mark.points, old.max_points AS old_max_points,
+            new.max_points AS new_max_points",
+        "AND mark.points IS NOT NULL ORDER BY job.submission LIMIT ?"
+    );
+    regrade.set_by_staff = transaction.all(statement, values![id, MAX_CHANGES]).await?;
+    let statement = regraded!(
+        changed "count(*) AS n, count(CASE WHEN CAST(new.points AS REAL) > CAST(old.points AS REAL) THEN 1 END) AS more,
             count(CASE WHEN CAST(new.points AS REAL) < CAST(old.points AS REAL) THEN 1 END) AS fewer",
         ""
     );
     let counts = transaction.one(statement, values![id]).await?;
     regrade.changed = count(counts.int("n")?);
     (regrade.more, regrade.fewer) = (count(counts.int("more")?), count(counts.int("fewer")?));
-    let statement = changes!(
-        "job.submission, submission.number, account.login, new.code AS new_code, new.points AS new_points,
-            new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
-            old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
-            old.version AS old_version, old.task AS old_task",
+    let statement = regraded!(
+        changed "job.submission, submission.number, account.login, new.code AS new_code, new.points AS new_points,
+            new.max_points AS new_max_points, new.summary AS new_summary, new.version AS new_version,
+            new.task AS new_task, old.code AS old_code, old.points AS old_points, old.max_points AS old_max_points,
+            old.summary AS old_summary, old.version AS old_version, old.task AS old_task",
         "AND job.submission > ? ORDER BY job.submission LIMIT ?"
     );
     regrade.changes = transaction.all(statement, values![id, after, MAX_CHANGES]).await?;
@@ -319,7 +384,8 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
 impl FromRow for Change {
     fn from_row(row: &Row) -> Result<Self, DbError> {
         Ok(read_row!(row => Self {
-            submission, number, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
+            submission, number, login, old_code, old_points, old_max_points, old_summary, new_code, new_points,
+            new_max_points, new_summary;
             why: differences(row)?,
         }))
     }

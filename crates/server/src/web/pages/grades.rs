@@ -194,6 +194,8 @@ actions! {
         staff.publish(&assignment, true) => "/c/{course}/a/{assignment}/class";
     withhold(staff: Staff, { course, assignment }):
         staff.publish(&assignment, false) => "/c/{course}/a/{assignment}/class";
+    regrade_newcomers(staff: Staff, { course, assignment, id }):
+        staff.regrade_newcomers(&assignment, id) => "/c/{course}/a/{assignment}/regrades/{id}";
     apply(staff: Staff, { course, assignment, id }):
         staff.apply_regrade(&assignment, id) => "/c/{course}/a/{assignment}/regrades/{id}";
     discard(staff: Staff, { course, assignment, id }):

@@ -127,6 +127,7 @@ pages! {
     post "/c/{course}/s/{id}/again" => submission::grade_again,
     post "/c/{course}/a/{assignment}/regrades" => grades::begin_regrade,
     get "/c/{course}/a/{assignment}/regrades/{id}" => grades::show_regrade,
+    post "/c/{course}/a/{assignment}/regrades/{id}/newcomers" => grades::regrade_newcomers,
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
     post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
     get "/c/{course}/s/{id}" => submission::show_submission,
@@ -178,6 +179,8 @@ pub(super) struct PageFrame {
     tabs: Vec<(String, &'static str)>,
     /// The address of the shown page among `tabs`.
     tab: String,
+    /// The address of the shown page, if the frame names the page.
+    address: String,
 }
 
 impl PageFrame {
@@ -212,6 +215,7 @@ impl PageFrame {
 
     /// Returns the frame with another page above this one.
     fn with_parent(mut self, address: String, title: &str) -> Self {
+        self.address.clone_from(&address);
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
         } else if self.parents.last().is_none_or(|(last, _)| *last != address) {

@@ -39,9 +39,14 @@ pub(super) fn likely_mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students with a common value, such as a mistake: the value, their logins, and the number of a submission as an
-/// example.
-pub(super) type StudentCluster = (String, Vec<String>, i64);
+/// Students with a common value, such as a mistake: the value, their logins and names, and the number of a submission as
+/// an example.
+pub(super) type StudentCluster = (String, Vec<(String, String)>, i64);
+
+/// Returns the logins of students, separated by commas.
+pub(super) fn join_logins(students: &[(String, String)]) -> String {
+    students.iter().map(|(login, _)| login.as_str()).collect::<Vec<_>>().join(", ")
+}
 
 /// The statistics of a class's results.
 pub(super) struct Statistics {
@@ -76,7 +81,7 @@ impl Statistics {
             mistakes: find_clusters(standings, likely_mistake),
             duplicates: find_clusters(standings, |one| Some(one.digest.as_str()).filter(|digest| !digest.is_empty()))
                 .into_iter()
-                .filter(|(_, logins, _)| logins.len() > 1)
+                .filter(|(_, students, _)| students.len() > 1)
                 .collect(),
         }
     }
@@ -96,15 +101,16 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
 
 /// Groups students by the value that `key` returns for their submissions. The largest groups are first.
 fn find_clusters(standings: &[ShortStanding], key: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<StudentCluster> {
-    let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
+    let mut found: BTreeMap<&str, (Vec<(String, String)>, i64)> = BTreeMap::new();
     for standing in standings {
         let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, key(counts)?))) else {
             continue;
         };
-        found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(standing.login.clone());
+        let student = (standing.login.clone(), standing.name.clone());
+        found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(student);
     }
     let mut found: Vec<StudentCluster> =
-        found.into_iter().map(|(name, (logins, first))| (name.to_owned(), logins, first)).collect();
-    found.sort_by_key(|(_, logins, _)| Reverse(logins.len()));
+        found.into_iter().map(|(name, (students, first))| (name.to_owned(), students, first)).collect();
+    found.sort_by_key(|(_, students, _)| Reverse(students.len()));
     found
 }

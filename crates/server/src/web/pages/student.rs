@@ -121,7 +121,7 @@ async fn render_import(staff: &Staff, table: String, lines: Vec<ImportRow>, is_d
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff)
         .with_parent(format!("/c/{slug}/members"), "Members")
-        .with_parent(format!("/c/{slug}/members/import"), "Import");
+        .with_parent(format!("/c/{slug}/members/import"), "Import a class");
     let is_wrong = lines.iter().any(|line| line.member.error.is_some());
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(["Name", "Login", "E-mail", "Role", "Link"]).map_err(|_| Problem::fault())?;

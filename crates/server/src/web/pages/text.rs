@@ -40,10 +40,10 @@ pub(super) fn shorten(text: &str) -> String {
     if beginning.len() < text.len() { format!("{words} ...") } else { beginning }
 }
 
-/// Formats a verdict's code and the points.
-pub(super) fn result(code: &str, points: &Option<String>) -> String {
+/// Formats a verdict's code, the points and, if it is known, the maximum.
+pub(super) fn result(code: &str, reached: &Option<String>, most: &Option<String>) -> String {
     let verdict = verdict(code);
-    points.as_deref().map_or_else(|| verdict.to_owned(), |points| format!("{verdict}, {} points", round_points(points)))
+    if reached.is_none() { verdict.to_owned() } else { format!("{verdict}, {} points", points(reached, most)) }
 }
 
 /// Describes the state of a regrade.

@@ -70,6 +70,9 @@ if [ "$code" = FAIL ] && [ ! -e "$0.mended" ]; then
     exit 3
 fi
 [ "$code" = FAIL ] && code=WA
+# The other suite has twice the points.
+most=100
+[ "$suite" = course-2027 ] && most=200
 # By the other rules everything is worth half.
 [ "$rules" = parity ] && points=$((points / 2))
 printf '<script>alert(1)</script> %s by %s, ' "$(basename "$program")" "$(basename "$suite")" > "$text"
@@ -85,7 +88,7 @@ if [ $visibility = hidden ]; then
 fi
 cat > "$json" <<END
 {"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": 100, "wall_seconds": $$.5, "groups": [{"name": "Group", "points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
+ "max_points": $most, "wall_seconds": $$.5, "groups": [{"name": "Group", "points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
  {"name": "=More", "visibility": "$visibility", "points": $points, "max_points": 90, "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]

@@ -9,6 +9,7 @@ on_both_engines!(
     an_upload_sent_twice_is_one_submission,
     limits_are_kept_and_say_so,
     a_regrade_changes_nothing_until_it_is_applied,
+    a_regrade_tells_of_grades_of_staff_and_of_newcomers,
     a_discarded_regrade_leaves_no_trace_in_grades,
     what_was_accepted_survives_a_kill_of_the_server,
     nobody_gains_or_loses_rights_by_an_old_link,
@@ -245,6 +246,54 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     assert!(page.contains("the rules were too kind"), "{page}");
     let new = ada.submit("physics", &program("WA", 80));
     assert_eq!(ada.wait_for_grade("physics", new)["grade"]["points"], "40");
+}
+
+async fn a_regrade_tells_of_grades_of_staff_and_of_newcomers(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "2"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let id = ada.submit("physics", &program("WA", 40));
+    ada.wait_for_grade("physics", id);
+    let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
+    admin.send("PUT", &mark, JSON, br#"{"points": 12.5, "comment": "by hand"}"#).expect(200);
+    let other = ada.submit("physics", &program("WA", 60));
+    ada.wait_for_grade("physics", other);
+    assert!(!admin.get("/c/physics/a/m1/class").expect(200).text().contains("One regrade is open"));
+    let base = "/api/v1/courses/physics/assignments/m1/regrades";
+    let wish = r#"{"reason": "another suite", "settings": {"suite": "course-2027", "rules": "parity", "per_hour": 0}}"#;
+    let regrade = admin.post_json(base, wish).expect(201).json()["id"].clone();
+    let path = format!("{base}/{regrade}");
+    let finish = || {
+        while admin.get(&path).expect(200).json()["left"] != 0 {
+            std::thread::sleep(std::time::Duration::from_millis(20));
+        }
+    };
+    finish();
+    let place = format!("/c/physics/a/m1/regrades/{regrade}");
+    let page = || admin.get(&place).expect(200).text();
+    // The points of staff stay, with another maximum. Every number of points has its maximum.
+    let stays =
+        format!("1 grade set by staff stays: 12.5, now of 200 (<a href=\"/c/physics/s/{id}\">ada, submission 1");
+    assert!(page().contains(&stays) && page().contains("1 grade would change, 1 down"), "{}", page());
+    assert!(page().contains("60 of 100 points") && page().contains("30 of 200 points"), "{}", page());
+    // Only the link to an open regrade is there, not a form that would be rejected.
+    let class = admin.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(class.contains("One regrade is open") && !class.contains("name=\"reason\""), "{class}");
+    // A newcomer is counted before the regrade is applied, and is graded by a button.
+    let late = ada.submit("physics", &program("WA", 80));
+    ada.wait_for_grade("physics", late);
+    assert!(page().contains("1 submission arrived after the regrade began"), "{}", page());
+    assert!(page().contains("Grade it too") && !page().contains("Apply these grades"), "{}", page());
+    admin.post_form(&format!("{place}/newcomers"), "").expect(303);
+    finish();
+    assert!(page().contains("3 submissions.") && page().contains("2 grades would change"), "{}", page());
+    assert!(!page().contains("arrived after"), "{}", page());
+    admin.post_form(&format!("{place}/apply"), "").expect(303);
+    assert!(page().contains(&stays) && page().contains("2 grades changed"), "{}", page());
+    admin.post_form(&format!("{place}/newcomers"), "").expect(409);
+    let grade = ada.wait_for_grade("physics", id)["grade"].clone();
+    assert_eq!([&grade["points"], &grade["max_points"]], ["12.5", "200"]);
 }
 
 async fn a_discarded_regrade_leaves_no_trace_in_grades(fresh: Fresh) {

@@ -164,6 +164,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/c/{course}/s/{id}/again", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades", Staff),
     ("get", "/c/{course}/a/{assignment}/regrades/{id}", Staff),
+    ("post", "/c/{course}/a/{assignment}/regrades/{id}/newcomers", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/apply", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/discard", Staff),
     ("get", "/c/{course}/s/{id}/beside", Staff),

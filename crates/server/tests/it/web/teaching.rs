@@ -35,7 +35,7 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     teacher.send("POST", &format!("{path}?preview=true"), &csv, table.as_bytes()).expect(200);
     assert_eq!(members(), 1);
     let imported = teacher.post_form("/c/physics/members/import", &format!("{form}&import=yes")).expect(200).text();
-    for part in ["mailto:ada%40example.org?", "data:text/csv", "/welcome/"] {
+    for part in ["mailto:ada%40example.org?", "data:text/csv", "/welcome/", "data-copy=\"http", "To the members"] {
         assert!(imported.contains(part), "{part}: {imported}");
     }
     assert_eq!(members(), 4);
@@ -45,9 +45,11 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let link = page.split("<code>").nth(1).and_then(|rest| rest.split('<').next()).expect("a link");
     let ada = server.visitor().welcome(link.rsplit('/').next().expect("a secret"));
     assert_eq!(ada.get("/api/v1/me").expect(200).json()["login"], "ada");
-    // A file works like the form: it is previewed first, and ignored columns are listed.
+    // A file works like the form, and is on its page: it is previewed first, and ignored columns are listed.
     let file = "--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"class.csv\"\r\n\r\n\
                 Login,Name,Matriculation\ndora,Dora,4711\n\r\n--b--\r\n";
+    let page = teacher.get("/c/physics/members/import").expect(200).text();
+    assert!(page.contains("action=\"/c/physics/members/table\""), "{page}");
     let form = [("Content-Type", "multipart/form-data; boundary=b")];
     let page = teacher.send("POST", "/c/physics/members/table", &form, file.as_bytes()).expect(200).text();
     assert!(page.contains("not used: Matriculation.") && page.contains("dora,Dora,4711"), "{page}");
@@ -106,6 +108,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
     check_parts(&server, &admin, &teacher);
+    check_names(&server, &admin, &teacher);
     // The wrong scenes of students.
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     let hard = "students\">2</td><td class=\"words\" data-label=\"who\"><a href=\"/c/physics/a/m1/students/ada";
@@ -158,6 +161,23 @@ fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
         }
     }
     assert!(teacher.get("/c/physics/a/m1/class?mistake=none").expect(200).text().contains("matches the filter"));
+}
+
+/// Checks that a class page names students as its table does, and says how a program ended.
+fn check_names(server: &Server, admin: &Client, teacher: &Client) {
+    for login in ["dora", "emil"] {
+        let student = server.member(admin, "physics", login, "student");
+        let id = student.submit("physics", &program("RTE", 5));
+        student.wait_for_grade("physics", id);
+    }
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    let (same, table) = (class.split("byte for byte").nth(1), class.split("<tbody>").nth(1));
+    assert!(same.is_some_and(|same| same.contains("The dora, The emil</summary>")), "{class}");
+    assert!(table.is_some_and(|table| table.contains("<td class=\"words\">a step is wrong</td>")), "{class}");
+    assert!(class.contains("data-copy=\"dora, emil\""), "{class}");
+    for login in ["dora", "emil"] {
+        admin.send("DELETE", &format!("/api/v1/accounts/{login}/data"), &[], b"").expect(204);
+    }
 }
 
 /// Checks that a request has the submission's number among those of its owner, and that scenes that did not run are not
