@@ -195,6 +195,37 @@ test("letters of charts are no smaller on a phone", async () => {
   await close();
 });
 
+test("the picture and the plots of polynomials suit a window that becomes narrow", async () => {
+  const { page, complaints, close } = await openReport(writeReport("polynomial"));
+  const picture = () => page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.toDataURL());
+  const wide = await picture();
+  await page.setViewportSize({ width: 390, height: 844 });
+  await page.waitForFunction((before) => document.querySelector(".viewer canvas.picture").toDataURL() !== before, wide);
+  const redrawn = await picture();
+  await page.reload();
+  await page.waitForSelector("html[data-ready]");
+  assert.equal(redrawn, await picture(), "as if it had been opened narrow");
+  // All letters are readable, and no name runs under its bar.
+  await page.locator("details").evaluateAll((all) => all.forEach((one) => (one.open = true)));
+  const plots = await page.locator(".call figure").evaluateAll((figures) =>
+    figures.map((figure) => {
+      const texts = [...figure.querySelectorAll("text")];
+      const bars = [...figure.querySelectorAll("rect")].map((bar) => bar.getBoundingClientRect());
+      const covers = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+      return [
+        Math.min(...texts.map((text) => parseFloat(getComputedStyle(text).fontSize) * text.getScreenCTM().a)),
+        texts
+          .filter((text) => bars.some((bar) => covers(text.getBoundingClientRect(), bar)))
+          .map((text) => text.textContent),
+      ];
+    }),
+  );
+  assert.ok(plots.length >= 2, `${plots.length}`);
+  for (const [size, covered] of plots) assert.ok(size > 9 && covered.length === 0, `${size} ${covered}`);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a step whose impulses are wrong opens after its impulses, where its end would look right", async () => {
   const { page, complaints, close } = await openReport(writeReport("impulses"));
   const after = page.getByRole("checkbox", { name: "after the impulses" });

@@ -74,6 +74,7 @@ impl fmt::Display for RunEnd {
             Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),
             Self::FolderLimit => formatter.write_str("put more into its working folder than allowed"),
             Self::Violation { call } => write!(formatter, "used a forbidden system call: {call}"),
+            Self::CouldNotStart(own @ StartProblem::GradersOwn) => write!(formatter, "was not started: {own}"),
             Self::CouldNotStart(problem) => write!(formatter, "could not start: {problem}"),
             Self::Cancelled => formatter.write_str("was stopped by the grader"),
         }

@@ -176,10 +176,9 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
-    let curves = [
-        plot_polynomial(format!("{role}, expected"), expected, set),
-        plot_polynomial(format!("{role}, yours"), logged, &own),
-    ];
+    // The names have to fit left of their bars; the title has the role.
+    let curves =
+        [plot_polynomial("expected".to_owned(), expected, set), plot_polynomial("yours".to_owned(), logged, &own)];
     let title = format!("Step {step}: {role}, expected and yours");
     let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(PlotTarget::Page);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")

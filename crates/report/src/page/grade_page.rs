@@ -236,8 +236,11 @@ impl<'a> Article<'a> {
             (Some(card), CardDetail::Rounded) => card.round_motions(&key),
             _ => String::new(),
         };
-        let outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
+        let mut outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
             + &render_output("Standard error", &scene.stderr, room_of_outputs);
+        if outputs.is_empty() && shown.is_empty() && scene.result.ended.is_some() && *room_of_outputs > 0 {
+            outputs = "<p class=\"hint\">It printed nothing.</p>\n".to_owned();
+        }
         let lines = describe_difference(scene).into_iter().chain(details).collect();
         Self { scene, key, lines, shown, outputs, motion }
     }

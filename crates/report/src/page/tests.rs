@@ -6,7 +6,7 @@ use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
     disclosure::Disclosure,
-    result::WrongTrace,
+    result::{ProgramProgress, RunEnd, WrongTrace},
     score,
 };
 use fosssim_judge::{Book, FindingKind, Outcome, Rules, replay};
@@ -271,6 +271,21 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
     };
     [Audience::Staff, Audience::Student]
         .map(|reader| GradePage { grade: &grade, card: &card, class: None, reader }.html())
+}
+
+/// An opened card is never empty.
+#[test]
+fn a_program_that_prints_nothing_is_reported_as_silent() {
+    let reason = Reason::Program(ProgramProgress { limit: None, steps: 0 });
+    let result = |stderr: &str| SceneResult {
+        ended: Some(RunEnd::Exited(3)),
+        stderr: stderr.to_owned(),
+        ..SceneResult::without_run("Group/scene", 5, Verdict::RuntimeError, reason.clone())
+    };
+    assert!(page_of(vec![result("")], None).contains("<p class=\"hint\">It printed nothing.</p>"));
+    assert!(!page_of(vec![result("no memory")], None).contains("It printed nothing."));
+    let traces = SceneResult { ended: None, ..result("") };
+    assert!(!page_of(vec![traces], None).contains("It printed nothing."), "there was no program");
 }
 
 /// The details that a level hides are not in the file at all: neither as text, nor in the viewer's data.

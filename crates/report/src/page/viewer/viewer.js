@@ -287,9 +287,10 @@ class Viewer extends Words {
       this.keys,
     );
     // On wide screens, sums are next to the picture and bodies are below it.
-    this.article
-      .querySelector(".side")
-      .append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
+    if (data.full)
+      this.article
+        .querySelector(".side")
+        .append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
     this.article
       .querySelector(".seen")
       .append(
@@ -539,7 +540,8 @@ document.addEventListener("keydown", (event) => {
     if (viewer) viewer.key_down(event);
   }
 });
-matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () =>
-  viewers.forEach((viewer) => viewer && viewer.look()),
-);
+// Letters depend on the width of the picture.
+const redraw = () => viewers.forEach((viewer) => viewer && viewer.look());
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+addEventListener("resize", redraw);
 start();

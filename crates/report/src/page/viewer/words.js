@@ -91,7 +91,7 @@ class Words extends Drawing {
         "div",
         { class: "scroll", tabindex: 0, role: "region", "aria-label": "This step in numbers" },
         table(
-          data.full ? ["", "expected", "yours"] : ["", "yours"],
+          ["", "expected", "yours"],
           this.cut([
             ...rows,
             ...phases.map(([name, expected, own]) => [`momentum ${name}: x, y, angular`, ...both(expected, own)]),
