@@ -162,10 +162,12 @@ test("a course of a platform, from its registration to a link in it", async () =
   await admin.page.getByRole("button", { name: "Sign in" }).click();
   await admin.page.goto(`${address}/admin/platforms`);
   const form = admin.page.locator("form[action='/admin/platforms']");
-  // Moodle's addresses are derived from its host. Others are typed.
+  // Moodle's addresses are derived from its host, and folded. Others are typed.
   await form.getByLabel("Platform", { exact: true }).selectOption("moodle");
   await form.getByLabel("Its host").fill("moodle.example.org");
   assert.equal(await form.getByLabel("Public keyset").inputValue(), "https://moodle.example.org/mod/lti/certs.php");
+  assert.ok(!(await form.getByLabel("Public keyset").isVisible()));
+  await form.getByText("Its addresses").click();
   for (const [label, value] of [
     ["Name here", "lms"],
     ["Issuer", place],

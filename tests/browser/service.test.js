@@ -155,8 +155,12 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await checkAccessibility(page);
   await page.getByRole("button", { name: "Import these members" }).click();
   await page.getByRole("link", { name: "All links as a table" }).waitFor();
-  await page.goto(`${address}/c/physics/members`);
+  await page.getByRole("button", { name: "Copy the link of eve" }).waitFor();
+  await checkAccessibility(page);
+  await page.getByRole("link", { name: "To the members" }).click();
+  assert.ok(!(await page.getByLabel("Login", { exact: true }).isVisible()), "one place to add a person");
   await page.getByRole("link", { name: "Add a person" }).click();
+  await checkAccessibility(page);
   await page.getByLabel("Login", { exact: true }).fill("ada");
   await page.getByLabel("Name", { exact: true }).fill("Ada");
   await page.getByRole("button", { name: "Add", exact: true }).click();
@@ -277,6 +281,19 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     await checkAccessibility(page);
   }
   await checkWidth(page, places);
+  // On a phone, the page above is one link, and nothing of a class is cut.
+  await page.setViewportSize({ width: 390, height: 844 });
+  for (const [place, above] of [
+    ["/c/physics", "Courses"],
+    ["/c/physics/members/import", "Physics <b>of</b> spheres"],
+    ["/c/physics/a/m1/class", "Physics <b>of</b> spheres"],
+    ["/c/physics/a/m1/settings", "Milestone one"],
+    ["/c/physics/s/1", "Milestone one"],
+  ]) {
+    await page.goto(address + place);
+    assert.equal(await page.getByLabel("Where you are").innerText(), above, place);
+  }
+  await page.setViewportSize({ width: 1200, height: 1000 });
   // The log has no codes, and links to submissions.
   await page.goto(`${address}/c/physics/audit`);
   await page.getByText("wrong answer: 0 of 10 points").first().waitFor();
@@ -287,6 +304,13 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     await page.locator("#due-zone-name").innerText(),
     await page.evaluate(() => Intl.DateTimeFormat().resolvedOptions().timeZone),
   );
+  // A time zone that does not exist is marked before anything is sent.
+  await page.getByLabel("Time zone", { exact: true }).fill("Mars/Base");
+  assert.match(
+    await page.getByLabel("Time zone", { exact: true }).evaluate((field) => field.validationMessage),
+    /Mars/,
+  );
+  await page.getByLabel("Time zone", { exact: true }).fill("Europe/Berlin");
   await page.getByLabel("Due", { exact: true }).fill("2096-07-01T23:59");
   await page.getByRole("button", { name: "Save" }).click();
   await page.getByText("Saved.").waitFor();

@@ -104,7 +104,7 @@ problems! {
     /// The uploaded file is not a submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
-        "correct the file and upload it again; this did not count as an attempt";
+        "choose another file; this did not count as an attempt";
     /// The uploaded file is not a suite.
     no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is not a suite",
         detail,

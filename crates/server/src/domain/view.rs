@@ -91,7 +91,8 @@ pub struct Submission {
     /// The number of jobs ahead in the queue, while the submission waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
-    /// The expected number of seconds until the grade is there, while the submission waits and workers are connected.
+    /// The expected number of seconds until the grade is there, while the submission waits and workers are connected,
+    /// and while it is graded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
     /// Whether the submission waits although no worker is connected that could grade it.
@@ -427,7 +428,9 @@ pub(super) async fn submission(
     let statement = submissions!("submission.id = ? AND assignment.course = ?");
     let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
-    if let Some(job) = submission.job
+    if let Some(job) = submission.job.filter(|_| submission.state == "running") {
+        submission.expected_seconds = queue::find_remaining_time(transaction, Lane::Grading, job).await?;
+    } else if let Some(job) = submission.job
         && let Some(place) = queue::find_queue_position(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
@@ -523,7 +526,8 @@ impl FromRow for Assignment {
 /// An entry of the audit log.
 pub(super) struct Entry<'a> {
     pub(super) kind: &'static str,
-    pub(super) actor: i64,
+    /// The account of the person who did it; `None` for the server.
+    pub(super) actor: Option<i64>,
     pub(super) course: Option<i64>,
     pub(super) assignment: Option<i64>,
     pub(super) submission: Option<i64>,
@@ -532,8 +536,8 @@ pub(super) struct Entry<'a> {
 
 impl<'a> Entry<'a> {
     /// Creates an entry without a course or a submission.
-    pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
-        Self { kind, actor, course: None, assignment: None, submission: None, text }
+    pub(super) fn new(kind: &'static str, actor: impl Into<Option<i64>>, text: &'a str) -> Self {
+        Self { kind, actor: actor.into(), course: None, assignment: None, submission: None, text }
     }
 }
 

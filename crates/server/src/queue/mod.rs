@@ -20,7 +20,7 @@ pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{NewJob, Turn, enqueue, is_waiting};
 pub use lease::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
-pub use queue_position::{QueuePosition, find_queue_position};
+pub use queue_position::{QueuePosition, find_queue_position, find_remaining_time};
 pub use tick::{BuriedJob, Tick, tick};
 
 use crate::secret;

@@ -38,11 +38,7 @@ pub async fn find_queue_position(
     let statement = "SELECT count(*) AS n FROM job
         WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))";
     let ahead = transaction.one(statement, values![lane.name(), rank, rank, job]).await?.int("n")?;
-    let statement = "SELECT CAST(avg(took) AS {int}) AS took FROM (
-           SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
-           ORDER BY finished_at DESC LIMIT ?
-        ) AS recent";
-    let usual_millis = transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")?;
+    let usual_millis = usual_millis(transaction, lane).await?;
     let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
         WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let slots =
@@ -52,4 +48,26 @@ pub async fn find_queue_position(
         Duration::from_millis(u64::try_from(rounds.saturating_mul(usual.max(1))).unwrap_or(0))
     });
     Ok(Some(QueuePosition { ahead, expected, is_served: slots > 0 }))
+}
+
+/// Returns the mean duration of recent jobs in milliseconds; `None` if there are none.
+async fn usual_millis(transaction: &mut Transaction, lane: Lane) -> Result<Option<i64>, DbError> {
+    let statement = "SELECT CAST(avg(took) AS {int}) AS took FROM (
+           SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
+           ORDER BY finished_at DESC LIMIT ?
+        ) AS recent";
+    transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")
+}
+
+/// Returns the number of seconds, at least one, that a running job will still need; `None` if it already takes longer
+/// than recent jobs, or does not run.
+///
+/// # Errors
+///
+/// Fails if the database cannot be read.
+pub async fn find_remaining_time(transaction: &mut Transaction, lane: Lane, job: i64) -> Result<Option<u64>, DbError> {
+    let statement = "SELECT {now} - started_at AS took FROM job WHERE id = ? AND state = 'running'";
+    let Some(row) = transaction.row(statement, values![job]).await? else { return Ok(None) };
+    let left = usual_millis(transaction, lane).await?.unwrap_or(0) - row.int("took")?;
+    Ok(u64::try_from(left).ok().map(|left| (left / 1000).max(1)))
 }

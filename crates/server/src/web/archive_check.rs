@@ -33,12 +33,12 @@ pub(super) async fn examine(
     let form = declared_form.map(|name| Form::from_name(name).ok_or_else(invalid)).transpose()?;
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
-    ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
+    ensure(!start.is_empty(), settings.reject_file("the file is empty"))?;
     match (form, is_program(&start)) {
         (None | Some(Form::Program), true) => return Ok(Form::Program),
         (Some(Form::Program), false) => {
             let found = fosssim_intake::describe(&start);
-            return Err(Problem::unusable(format!("expected {PROGRAM_DESCRIPTION}, but found {found}")));
+            return Err(settings.reject_file(format!("expected {PROGRAM_DESCRIPTION}, but found {found}")));
         }
         _ => {}
     }
@@ -55,7 +55,7 @@ pub(super) async fn examine(
         flags.extend(["--program", &settings.program]);
     }
     let answer = check_in_turn(member, file, &flags).await?;
-    answer.map_err(Problem::unusable)?.ok_or_else(Problem::fault)
+    answer.map_err(|detail| settings.reject_file(detail))?.ok_or_else(Problem::fault)
 }
 
 /// Unpacks an archive into an empty folder.

@@ -29,6 +29,9 @@ const MAX_FETCHES: u32 = 5;
 /// The minimum time between two reports of a grading's progress.
 const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
+/// The time between two looks for the first progress, so that it is reported early.
+const FIRST_REPORT_INTERVAL: Duration = Duration::from_millis(100);
+
 /// A number of scenes that is larger than that of any suite. Larger numbers in a progress file are ignored.
 const MAX_SCENES: u32 = 1_000_000;
 
@@ -172,7 +175,8 @@ async fn renew<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opt
     let mut last_renewal = tokio::time::Instant::now();
     let mut reported = None;
     loop {
-        tokio::time::sleep(every.min(REPORT_INTERVAL)).await;
+        let pause = if reported.is_none() { FIRST_REPORT_INTERVAL } else { REPORT_INTERVAL };
+        tokio::time::sleep(every.min(pause)).await;
         let progress = file.as_deref().and_then(read_progress);
         if progress == reported && last_renewal.elapsed() < every {
             continue;

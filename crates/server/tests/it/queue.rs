@@ -325,6 +325,12 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
     let last = place(jobs[3]).await.expect("it waits");
     assert_eq!((last.ahead, last.expected), (2, Some(Duration::from_secs(20))));
     assert_eq!(ahead(regrade).await, Some(3));
+    // While a job runs, the rest of its time is expected.
+    let running = claim(database, "w").await.expect("a job").lease.job;
+    let mut transaction = database.read().await.expect("a transaction");
+    let mut rest = async |job| queue::find_remaining_time(&mut transaction, Lane::Grading, job).await.expect("a time");
+    assert!(rest(running).await.is_some_and(|seconds| (5..=10).contains(&seconds)));
+    assert_eq!(rest(jobs[3]).await, None, "it does not run");
 }
 
 async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {

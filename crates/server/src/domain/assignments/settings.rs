@@ -273,6 +273,16 @@ impl Settings {
         accepted.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }
 
+    /// Returns the rejection of an uploaded file. The remedy names the file to choose instead.
+    pub(crate) fn reject_file(&self, detail: impl Into<String>) -> Problem {
+        let files = Form::ALL.into_iter().filter(|form| self.accepts_form(*form)).map(|form| match form {
+            Form::Program => format!("the file {} in your build folder", self.program),
+            archive => archive.describe().to_owned(),
+        });
+        let files = files.collect::<Vec<_>>().join(" or ");
+        Problem { remedy: format!("choose {files}; this did not count as an attempt"), ..Problem::unusable(detail) }
+    }
+
     /// Returns whether submissions in this form are accepted.
     pub fn accepts_form(&self, form: Form) -> bool {
         self.has_form(form.name())

@@ -257,7 +257,10 @@ impl App {
         let statement =
             "INSERT INTO account (login, name, is_admin, created_at) VALUES ('admin', 'Administrator', 1, {now})
             ON CONFLICT (login) DO NOTHING";
-        transaction.execute(statement, values![]).await?;
+        if transaction.execute(statement, values![]).await? > 0 {
+            let text = "created the first administrator, admin; printed a sign-in link";
+            view::log_event(&mut transaction, &Entry::new("account", None, text)).await?;
+        }
         let statement = "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
             WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL";
         if transaction.row(statement, values![]).await?.is_some() {

@@ -62,7 +62,8 @@ impl Member {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.accepts_form(upload.form) {
             let (accepted, found) = (assignment.settings.describe_forms(), upload.form.describe());
-            return Err(Problem::unusable(format!("this assignment accepts {accepted}, but the file is {found}")));
+            let detail = format!("this assignment accepts {accepted}, but the file is {found}");
+            return Err(assignment.settings.reject_file(detail));
         }
         // Simultaneous uploads of an account are checked one after another. Otherwise an upload could be stored
         // although an earlier one has used up the limit.

@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::{Row, read_rows},
-    redirect_to, render, text,
+    render, text,
 };
 use crate::{
     domain::{Course, CourseMembership, Member, Person, TokenInfo},

@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::People,
-    redirect_to, render, text,
+    render, text,
 };
 use crate::{
     domain::{Admin, App, CourseSize, Event, EventQuery, ListedAccount, Queue, TokenInfo},

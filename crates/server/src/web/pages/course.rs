@@ -1,7 +1,7 @@
 //! The pages of a course: its assignments, its members, its queue, and its audit log.
 use super::{
     super::input::{AddressParts, Fields, QueryInput, SeenEvent},
-    Page, PageFrame, redirect_to, render, text,
+    Page, PageFrame, render, text,
 };
 use crate::{
     domain::{

@@ -1,7 +1,7 @@
 //! The pages about a class's grades, and about regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
-    Page, PageFrame, redirect_to, render, scenes,
+    Page, PageFrame, render, scenes,
     settings::{Grading, SuiteOption, list_suites},
     statistics::{self, Statistics},
     text,
@@ -170,7 +170,7 @@ pub(super) async fn begin_regrade(
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.apply_to(&staff.assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), &settings).await?;
-    Ok(redirect_to(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
+    Ok(Redirect::to(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
 pub(super) async fn show_regrade(

@@ -12,7 +12,7 @@ macro_rules! actions {
             $sender: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
-            Ok(redirect_to(&format!($to $(, $part)*)))
+            Ok(Redirect::to(&format!($to $(, $part)*)))
         })*
     };
 }
@@ -236,11 +236,6 @@ fn render(template: &impl Template) -> Page {
     })
 }
 
-/// Redirects to a page after a form was sent. That page can be reloaded without sending the form again.
-fn redirect_to(address: &str) -> Redirect {
-    Redirect::to(address)
-}
-
 #[derive(Template)]
 #[template(path = "problem.html")]
 struct ProblemPage {
@@ -297,7 +292,7 @@ async fn rejection_page(mut response: Response, mut head: Parts, app: &App) -> R
         let to = head.uri.path_and_query().map_or("/", PathAndQuery::as_str);
         let query = byte_serialize(to.as_bytes()).collect::<String>();
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
-        return redirect_to(&address).into_response();
+        return Redirect::to(&address).into_response();
     }
     // Use the address in this header only if it is a page of this server.
     let from = head.headers.get(header::REFERER).and_then(|from| Url::parse(from.to_str().ok()?).ok());

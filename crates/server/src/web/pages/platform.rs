@@ -4,7 +4,7 @@ use super::{
         identification::browser_cookie,
         input::{AddressParts, Fields},
     },
-    Page, PageFrame, course, redirect_to, render, sign_in, text,
+    Page, PageFrame, course, render, sign_in, text,
 };
 use crate::{
     domain::{
@@ -203,7 +203,7 @@ pub(super) async fn choose_assignment(
         course::create_assignment(&staff, &slug, choice.title.trim(), &choice.suite).await?;
     }
     match person.choose_assignment(&secret, &slug).await? {
-        LinkStep::Assignment(path) => Ok(redirect_to(&path).into_response()),
+        LinkStep::Assignment(path) => Ok(Redirect::to(&path).into_response()),
         LinkStep::Answer { address, origins, token } => {
             let page =
                 render(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();

@@ -1,7 +1,6 @@
 //! The pages for signing in at an OpenID Connect provider.
 use super::{
     super::{identification::provider_cookie, input::QueryInput},
-    redirect_to,
     sign_in::{self, Answer, NextPage},
 };
 use crate::{

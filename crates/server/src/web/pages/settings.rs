@@ -4,7 +4,7 @@ use super::{
         api::{self, Revision},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, redirect_to, render, text,
+    Page, PageFrame, render, text,
 };
 use crate::{
     calendar,
@@ -134,7 +134,9 @@ impl NewSettings {
             due_at: read_due_date(&self.due, &self.due_zone, before.due_at)?,
             time_zone: match self.time_zone.trim() {
                 "" => None,
-                name => Some(parse("the time zone, such as Europe/Berlin,", name)?),
+                name => Some(name.parse().map_err(|_| {
+                    Problem::invalid(format!("there is no time zone {name:?}; names are like Europe/Berlin"))
+                })?),
             },
             ..self.grading.apply_to(before)?
         })
@@ -174,7 +176,7 @@ pub(super) async fn save(
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.apply_to(before)).await?;
-    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
+    Ok(Redirect::to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }
 
 pub(super) async fn set_suite(
@@ -184,5 +186,5 @@ pub(super) async fn set_suite(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, &query, request).await?;
-    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
+    Ok(Redirect::to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }

@@ -4,7 +4,7 @@ use super::{
         guard::{SESSION_SECONDS, session_cookie},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, redirect_to, render,
+    Page, PageFrame, render,
 };
 use crate::{
     domain::{App, NewSecret, Visitor},
@@ -13,7 +13,7 @@ use crate::{
 use askama::Template;
 use axum::{
     http::{HeaderValue, header},
-    response::{IntoResponse, Response},
+    response::{IntoResponse, Redirect, Response},
 };
 use serde::Deserialize;
 use url::form_urlencoded::byte_serialize;
@@ -96,7 +96,7 @@ impl Answer {
 }
 
 pub(super) fn with_cookie(cookie: &str, path: &str) -> Response {
-    let mut response = redirect_to(path).into_response();
+    let mut response = Redirect::to(path).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
         response.headers_mut().append(header::SET_COOKIE, value);
     }

@@ -39,14 +39,9 @@ pub(super) fn likely_mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students with a common value, such as a mistake: the value, their logins and names, and the number of a submission as
-/// an example.
+/// Students with a common value, such as a mistake: the value, their logins and names, and the number of an example
+/// among their submissions.
 pub(super) type StudentCluster = (String, Vec<(String, String)>, i64);
-
-/// Returns the logins of students, separated by commas.
-pub(super) fn join_logins(students: &[(String, String)]) -> String {
-    students.iter().map(|(login, _)| login.as_str()).collect::<Vec<_>>().join(", ")
-}
 
 /// The statistics of a class's results.
 pub(super) struct Statistics {

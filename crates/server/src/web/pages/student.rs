@@ -5,7 +5,7 @@ use super::{
         input::{AddressParts, Fields},
         upload,
     },
-    Page, PageFrame, grades, redirect_to, render, scenes,
+    Page, PageFrame, grades, render, scenes,
     settings::read_due_date,
     text,
 };

@@ -3,7 +3,7 @@ use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
-    redirect_to, render, report, scenes, text,
+    render, report, scenes, text,
 };
 use crate::{
     domain::{Assignment, History, Member, Staff, Submission},
@@ -59,7 +59,7 @@ pub(super) async fn submit(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let result = api::receive(&member, &assignment, request, None, None, None).await?;
-    Ok(redirect_to(&format!("/c/{slug}/s/{}", result.submission.id)))
+    Ok(Redirect::to(&format!("/c/{slug}/s/{}", result.submission.id)))
 }
 
 /// Finds the assignment of a submission; `None` if the member may not see it.

@@ -10,7 +10,8 @@ use crate::{
 /// Formats a time as HTML. The text is in UTC, and a script converts it to the reader's time zone.
 pub(super) fn time(milliseconds: &i64) -> String {
     let (exact, minute) = (calendar::format_iso(*milliseconds), calendar::format_minute(*milliseconds));
-    format!("<time datetime=\"{exact}\">{minute} UTC</time>")
+    let second = exact.replace('T', " ");
+    format!("<time datetime=\"{exact}\" title=\"{} UTC\">{minute} UTC</time>", &second[..19])
 }
 
 /// Formats a time in UTC for a form field, such as `2026-11-22T08:45`.

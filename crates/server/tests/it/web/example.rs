@@ -25,6 +25,12 @@ async fn two_commands_and_an_upload(fresh: Fresh) {
     // An administrator sees the size of a course and missing staff. Staff see how many students have submitted.
     let courses = admin.get("/admin").expect(200).text();
     assert!(courses.contains("\"submissions\">1<") && courses.contains("nobody: <a"), "{courses}");
+    // The log of a new server begins with its creation.
+    let log = admin.get("/admin/log").expect(200).text();
+    assert!(
+        log.contains("created the first administrator, admin") && log.contains("example (Example course)"),
+        "{log}"
+    );
     let course = admin.get("/c/example").expect(200).text();
     assert!(course.contains(">1 of 1<") && course.contains("\"accepted\">0<"), "{course}");
     let class = admin.get("/c/example/a/m1/class").expect(200).text();

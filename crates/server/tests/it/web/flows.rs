@@ -78,7 +78,10 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
 
     let metrics = visitor.get("/metrics").expect(200).text();
     assert!(metrics.contains("fosssim_jobs{state=\"done\"} 3"), "{metrics}");
+    // Inside a course, its log does not name the course.
     let audit = teacher.get("/c/physics/audit").expect(200).text();
+    assert!(!audit.contains("physics / m1") && audit.contains("<caption>Latest first"), "{audit}");
+    assert!(session.get("/admin/log").expect(200).text().contains("physics / m1"));
     assert!(audit.contains("bob became student"), "{audit}");
     assert!(server.stop().success());
     assert!(!server.log().contains("fso_"), "the log has a token");
@@ -158,6 +161,8 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     assert_eq!(send(&[b'#'; 101]).expect(413).json()["type"], "urn:fosssim:too-large");
     let remedy = send(b"MZ\x90").expect(422).json();
     assert!(remedy["detail"].as_str().expect("text").contains("expected a program for Linux"), "{remedy}");
+    let cure = "choose the file FOSSSim in your build folder or an archive of sources or an archive of traces; ";
+    assert!(remedy["remedy"].as_str().expect("text").starts_with(cure), "{remedy}");
     send(b"").expect(422);
     send(&program("AC", 1)).expect(201);
     assert!(send(&program("AC", 2)).expect(409).text().contains("used up"));

@@ -23,7 +23,7 @@ if (state && state.dataset.follow) {
     if (progress) Object.assign(state.querySelector("progress"), { max: progress.all, value: progress.done });
   };
   update();
-  setInterval(update, 2000);
+  setInterval(update, 1000);
 }
 // Send a form for which a person need not decide anything.
 document.querySelector("form[data-send]")?.submit();
@@ -99,7 +99,6 @@ if (form) {
 }
 // Show times in the reader's time zone.
 for (const time of document.querySelectorAll("time[datetime]")) {
-  time.title = time.textContent;
   time.textContent = new Date(time.dateTime).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 }
 // Convert fields, too: they arrive in UTC, and are sent with their time zone.
@@ -116,6 +115,17 @@ for (const field of document.querySelectorAll("input[type=datetime-local]")) {
     zone.value = field.value ? offset(new Date(field.value)) : 0;
   });
 }
+// Mark a time zone that does not exist.
+const timeZone = document.getElementById("time_zone");
+timeZone?.addEventListener("input", () => {
+  let fault = "";
+  try {
+    new Intl.DateTimeFormat("en", { timeZone: timeZone.value.trim() || "UTC" });
+  } catch {
+    fault = `There is no time zone ${timeZone.value.trim()}. Names are like Europe/Berlin.`;
+  }
+  timeZone.setCustomValidity(fault);
+});
 // Fill in the addresses of a learning platform from its host.
 const kind = document.getElementById("kind");
 if (kind) {
@@ -143,6 +153,7 @@ if (kind) {
       },
     }[kind.value];
     for (const [name, value] of Object.entries(fields ?? {})) document.getElementById(name).value = value;
+    document.getElementById("addresses").open = !fields;
   };
   kind.addEventListener("change", fill);
   host.addEventListener("input", fill);
