@@ -36,6 +36,9 @@ const BATCH_BYTES: usize = 1 << 18;
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// The number of steps at which a batch is full.
 const BATCH_STEPS: usize = 256;
+/// The number of steps at which a batch is full if nothing is read while it is judged. The slots of larger batches
+/// would take more time than the steps.
+const SEQUENTIAL_BATCH_STEPS: usize = 16;
 
 /// One step as read, and the result of judging it.
 #[derive(Debug, Default)]
@@ -152,26 +155,27 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
         progress.observe_begin();
         let (mut current, mut next) = (Batch::default(), Batch::default());
-        let mut stop = self.read_batch(&mut current);
         let mut workers = Workers::new(self.scene, options);
+        let mut stop = self.read_batch(&mut current, SEQUENTIAL_BATCH_STEPS);
         loop {
-            // A trace that fits into one batch is judged without other threads, unless they were requested.
+            // A short trace is judged without other threads, unless they were requested.
             let is_last = stop.is_some() || self.is_complete();
+            let is_short = is_last || workers.began_shortly_ago();
             let mut stop_after = None;
             let at_once =
-                !is_last && current.has_waiting_step() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
+                !is_short && current.has_waiting_step() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
             if at_once {
                 let (shape, rest) = (self.step_rules, self.remaining_work());
-                workers.judge_while(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
+                workers.judge_while(&current, &shape, rest, || stop_after = self.read_batch(&mut next, BATCH_STEPS));
             } else if current.has_waiting_step() {
-                workers.judge(&current, &self.step_rules, self.remaining_work(), is_last);
+                workers.judge(&current, &self.step_rules, self.remaining_work(), is_short);
             }
             let mut has_more = false;
             for (budget, work) in self.budgets.iter_mut().zip(current.work()) {
                 has_more |= work > budget.remaining() && budget.extend();
             }
             if has_more && current.has_waiting_step() {
-                workers.judge(&current, &self.step_rules, self.remaining_work(), is_last);
+                workers.judge(&current, &self.step_rules, self.remaining_work(), is_short);
             }
             if self.deliver(&mut current, progress, options) {
                 break;
@@ -189,11 +193,12 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 self.outcome.trailing_bytes = self.reader.has_more();
                 break;
             }
-            if !at_once {
-                stop_after = self.read_batch(&mut next);
+            if at_once {
+                stop = stop_after;
+                std::mem::swap(&mut current, &mut next);
+            } else {
+                stop = self.read_batch(&mut current, SEQUENTIAL_BATCH_STEPS);
             }
-            stop = stop_after;
-            std::mem::swap(&mut current, &mut next);
         }
         self.outcome.searches = workers.search_counts();
         self.conclude()
@@ -271,10 +276,11 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
     }
 
-    /// Fills a batch. If a step is unreadable, returns the reason to stop; the batch contains the steps before it.
-    fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
+    /// Fills a batch with at most `steps` steps. If a step is unreadable, returns the reason to stop; the batch
+    /// contains the steps before it.
+    fn read_batch(&mut self, batch: &mut Batch, steps: usize) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
-        while !self.is_complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
+        while !self.is_complete() && batch.filled < steps && batch.bytes < BATCH_BYTES {
             if batch.filled == batch.slots.len() {
                 batch.slots.push(Mutex::default());
             }

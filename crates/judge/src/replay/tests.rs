@@ -35,7 +35,7 @@ fn a_batch_counts_all_lists() {
         let mut replay = Replay::new(&scene, LenientReader::new(&trace[..], Layout::for_scene(&scene)), true);
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
-        assert!(replay.read_batch(&mut batch).is_none());
+        assert!(replay.read_batch(&mut batch, BATCH_STEPS).is_none());
         assert!(batch.filled == 1 && batch.bytes > 1_000_000, "{} steps, {} bytes", batch.filled, batch.bytes);
     }
 }

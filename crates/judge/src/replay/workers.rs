@@ -9,10 +9,15 @@ use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, SearchCounts, Simulation},
 };
-use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::{
+    sync::atomic::{AtomicU64, AtomicUsize, Ordering},
+    time::{Duration, Instant},
+};
 
 /// The maximum number of threads. Reading is sequential, so more threads would only cost memory.
 const MAX_THREADS: usize = 8;
+/// The time for which a trace is judged without other threads. Starting and ending them takes a tenth of it.
+const TIME_WITHOUT_THREADS: Duration = Duration::from_millis(20);
 
 /// The data that one thread needs to judge a step.
 struct Worker {
@@ -24,6 +29,8 @@ struct Worker {
 
 /// The threads that judge steps, and their data. They are started on demand.
 pub(super) struct Workers<'a> {
+    /// The time at which judging began. Browsers have no clock here, and no threads.
+    begin: Option<Instant>,
     scene: &'a Scene,
     root_search: RootSearch,
     judges_individually: bool,
@@ -37,6 +44,7 @@ impl<'a> Workers<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
         let Options { threads, root_search, judges_individually: one_by_one, .. } = *options;
         Self {
+            begin: (!cfg!(target_family = "wasm")).then(Instant::now),
             scene,
             root_search,
             judges_individually: one_by_one,
@@ -44,6 +52,11 @@ impl<'a> Workers<'a> {
             list: Vec::new(),
             pool: None,
         }
+    }
+
+    /// Returns whether other threads would not make judging faster yet.
+    pub(super) fn began_shortly_ago(&self) -> bool {
+        self.begin.is_none_or(|begin| begin.elapsed() < TIME_WITHOUT_THREADS)
     }
 
     /// Starts all threads, and returns whether there is more than one.
@@ -70,9 +83,9 @@ impl<'a> Workers<'a> {
         self.list.resize_with(workers.max(self.list.len()), worker);
     }
 
-    /// Judges a batch while nothing is read. The trace's last batch uses one thread, unless more are requested.
-    pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: [u64; 2], is_last: bool) {
-        if is_last && self.threads == 0 && self.pool.is_none() || !self.start_pool() {
+    /// Judges a batch while nothing is read. A short trace uses one thread, unless more are requested.
+    pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: [u64; 2], is_short: bool) {
+        if is_short && self.threads == 0 && self.pool.is_none() || !self.start_pool() {
             self.grow_to(1);
             judge_batch(batch, &mut self.list[..1], shape, rest);
         } else {
