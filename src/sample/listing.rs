@@ -46,7 +46,6 @@ fn render_table() -> String {
     for (kind, title) in [
         (RowKind::Wrong, "Mistakes: the result is wrong."),
         (RowKind::Variant, "Variants: the same mathematics with other arithmetic."),
-        (RowKind::Hostile, "Hostile programs."),
     ] {
         let rows: Vec<&Row> = all_rows().filter(|row| row.kind == kind).collect();
         text += &format!("{title} ({})\n\n", rows.len());

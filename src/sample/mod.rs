@@ -10,11 +10,9 @@
 )]
 
 mod arguments;
-mod hostile;
 mod listing;
 pub mod pinned_mistake;
 mod run;
-mod trace;
 
 use arguments::Options;
 use clap::Parser;

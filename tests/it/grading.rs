@@ -6,6 +6,10 @@ mod platforms;
 mod programs;
 
 use crate::workspace::{Workspace, finish};
+use fosssim_oracle::{
+    student::{self, Student},
+    suite::library,
+};
 use fosssim_testing::{Need, skip};
 use std::{
     os::unix::fs::symlink,
@@ -44,6 +48,40 @@ pub(crate) fn submit(workspace: &Workspace, mistakes: &[&str]) -> Vec<String> {
         path
     };
     mistakes.iter().map(submit).collect()
+}
+
+/// The only scene of the suite for scripts.
+const SCRIPTED_SCENE: &str = "GeometricTests/ball-on-a-fixed-edge";
+
+/// Commands that print 16 MiB.
+const FLOOD: &str = "x=0123456789abcdef; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do x=$x$x; done; i=0; \
+                     while [ $i -lt 256 ]; do printf %s $x; i=$((i + 1)); done";
+
+/// A command that stops the program, so that it never ends.
+const SLEEP: &str = "kill -STOP $$";
+
+/// Puts programs into `submissions/` that are scripts, and returns their paths. Each runs its commands, in which
+/// `RIGHT` writes a right trace of [`SCRIPTED_SCENE`], and `HALF` the first half of it. Programs must not start others.
+fn submit_scripts(workspace: &Workspace, programs: &[(&str, &str)]) -> Vec<String> {
+    let suite = SUITE.split("[[group]]").next().unwrap_or_default();
+    let group = format!("[[group]]\nname = \"Zones\"\nscenes = [\"asset:{SCRIPTED_SCENE}\"]\npoints = 10\n");
+    workspace.write("scripts.toml", format!("{suite}{group}"));
+    let scene = library::scene(SCRIPTED_SCENE).expect("an embedded scene");
+    let scene = fosssim_oracle::scene::read(SCRIPTED_SCENE, &scene).expect("a scene").scene;
+    let trace = student::record_trace(&scene, Student::default()).expect("a trace");
+    let write = |bytes: &[u8]| {
+        let octal: String = bytes.iter().map(|byte| format!("\\{byte:03o}")).collect();
+        format!("printf '{octal}' > trace.bin")
+    };
+    let (right, half) = (write(&trace), write(&trace[..trace.len() / 2]));
+    let submit = |&(name, commands): &(&str, &str)| {
+        let path = format!("submissions/{name}");
+        workspace.write(&path, format!("#!/bin/sh\n{}\n", commands.replace("RIGHT", &right).replace("HALF", &half)));
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        std::fs::set_permissions(workspace.path(&path), mode).expect("a mode");
+        path
+    };
+    programs.iter().map(submit).collect()
 }
 
 /// Returns the submission, verdict and points of every row of a grades.csv.
@@ -103,7 +141,8 @@ fn against_recordings_right_programs_pass_and_wrong_ones_do_not() {
 #[test]
 fn the_fair_rules_count_unless_somebody_says_otherwise() {
     let Some(workspace) = workspace() else { return };
-    let submissions = submit(&workspace, &["scale-1000", "trailing-bytes"]);
+    let scaled = submit(&workspace, &["scale-1000"]).remove(0);
+    let trailing = submit_scripts(&workspace, &[("trailing-bytes", "RIGHT; printf '12345678' >> trace.bin")]).remove(0);
     workspace.write("plain.toml", SUITE.replacen("rules = \"both\"\n", "", 1));
     let verdict = |submission: &str, more: &[&str]| {
         let fixed = ["grade", submission, "--format", "csv"];
@@ -114,15 +153,15 @@ fn the_fair_rules_count_unless_somebody_says_otherwise() {
         codes.dedup();
         (codes.join(" "), run)
     };
-    let scene = ["--scene", "ImpulsesTests/off-centre-on-turning-edge"];
+    let scene = ["--scene", SCRIPTED_SCENE];
     for suite in [&["--suite", "plain.toml"][..], &scene] {
-        assert_eq!(verdict(&submissions[0], suite).0, "AC", "{suite:?}");
-        let (codes, run) = verdict(&submissions[1], suite);
-        assert_eq!(codes, "BT", "{}", run.shown());
-        assert!(run.out().contains("trailing_bytes"), "where the original differs is told: {}", run.shown());
-        assert_eq!(verdict(&submissions[1], &[suite, &["--rules", "parity"]].concat()).0, "AC");
+        assert_eq!(verdict(&scaled, suite).0, "AC", "{suite:?}");
     }
-    let recorded = verdict(&submissions[1], &[&scene[..], &["--recorded"]].concat());
+    let (codes, run) = verdict(&trailing, &scene);
+    assert_eq!(codes, "BT", "{}", run.shown());
+    assert!(run.out().contains("trailing_bytes"), "where the original differs is told: {}", run.shown());
+    assert_eq!(verdict(&trailing, &[&scene[..], &["--rules", "parity"]].concat()).0, "AC");
+    let recorded = verdict(&trailing, &[&scene[..], &["--recorded"]].concat());
     assert_eq!(recorded.0, "AC", "recordings know parity only: {}", recorded.1.shown());
 }
 
@@ -184,37 +223,37 @@ fn hints_decide_how_much_a_report_tells_students() {
 #[test]
 fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() {
     let Some(workspace) = workspace() else { return };
+    let flood = format!("RIGHT; {FLOOD}");
     let cast = [
-        ("", "accepted"),
-        ("crash-midway", "run-time error"),
-        ("endless-loop", "time limit"),
-        ("escape-codes", "accepted"),
-        ("exit-one", "run-time error"),
-        ("flood-stdout", "accepted"),
-        ("forged-verdict", "wrong answer"),
-        ("huge-counts", "bad trace"),
-        ("leaves-children", "sandbox violation"),
-        ("no-output", "no output"),
-        ("sleep-forever", "time limit"),
-        ("trailing-bytes", "accepted"),
-        ("truncated-trace", "bad trace"),
+        ("crash-midway", "HALF; kill -ABRT $$", "run-time error"),
+        ("endless-loop", "HALF; while :; do :; done", "time limit"),
+        ("escape-codes", r"RIGHT; printf '\033[31;1mred\033[m \033]0;title\007' >&2", "accepted"),
+        ("exit-one", "RIGHT; exit 1", "run-time error"),
+        ("flood-stdout", &flood, "accepted"),
+        ("forged-verdict", "HALF; echo 'Overall success: Passed.'", "bad trace"),
+        ("leaves-children", "RIGHT; sleep 60 &", "sandbox violation"),
+        ("no-output", ":", "no output"),
+        ("right", "RIGHT", "accepted"),
+        ("sleep-forever", SLEEP, "time limit"),
+        ("trailing-bytes", "RIGHT; printf '12345678' >> trace.bin", "accepted"),
+        ("truncated-trace", "HALF", "bad trace"),
     ];
-    let submissions = submit(&workspace, &cast.map(|(mistake, _)| mistake));
+    let submissions = submit_scripts(&workspace, &cast.map(|(name, commands, _)| (name, commands)));
     let words = |output: &'static str| {
-        let options = ["--suite", "suite.toml", "--output", output].map(str::to_owned);
+        let options = ["--suite", "scripts.toml", "--output", output].map(str::to_owned);
         ["grade".to_owned()].into_iter().chain(submissions.clone()).chain(options)
     };
     let whole = workspace.run(words("whole"));
     assert_eq!(whole.code, Some(1), "{}", whole.shown());
     let verdicts: Vec<_> =
         rows(&workspace.read("whole/grades.csv")).into_iter().map(|(_, verdict, _)| verdict).collect();
-    assert_eq!(verdicts, cast.map(|(_, verdict)| verdict), "{}", whole.shown());
+    assert_eq!(verdicts, cast.map(|(.., verdict)| verdict), "{}", whole.shown());
     assert!(!whole.out().contains('\u{1b}') && !whole.err().contains('\u{1b}'), "no escape code gets through");
-    let log = workspace.read("whole/logs/fosssim-sample.escape-codes.log");
+    let log = workspace.read("whole/logs/escape-codes.log");
     assert!(!log.contains(&0x1b), "{}", String::from_utf8_lossy(&log));
 
     // The grading is interrupted when the first results are stored, twice, and then completed.
-    for kept in [3, 12] {
+    for kept in [3, 8] {
         let mut child = workspace
             .command()
             .args(words("parts"))
@@ -257,13 +296,16 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
 #[test]
 fn a_flood_behind_the_trace_gets_one_verdict_however_busy_the_machine_is() {
     let Some(workspace) = workspace() else { return };
-    submit(&workspace, &["flood-trace"]);
+    let program = format!("RIGHT; {{ {FLOOD}; }} >> trace.bin");
+    let flood = submit_scripts(&workspace, &[("flood", &program)]).remove(0);
+    let suite = String::from_utf8(workspace.read("scripts.toml")).expect("text");
+    workspace.write("flood.toml", suite.replace("[limits]", "[limits]\ntrace_mib = 16"));
     for (rules, verdict) in [("both", "AC"), ("fair", "BT")] {
         for jobs in ["1", "3", "12"] {
             let run = workspace.run([
                 "grade",
-                "submissions/fosssim-sample.flood-trace",
-                "--suite=suite.toml",
+                &flood,
+                "--suite=flood.toml",
                 "--rules",
                 rules,
                 "--jobs",
@@ -467,7 +509,8 @@ fn a_course_script_counts_with_the_drop_in() {
 #[test]
 fn a_grading_that_is_stopped_by_the_platform_keeps_its_partial_results() {
     let Some(workspace) = workspace() else { return };
-    let submissions = submit(&workspace, &["", "sleep-forever"]);
+    let mut submissions = submit(&workspace, &[""]);
+    submissions.extend(submit_scripts(&workspace, &[("sleep-forever", SLEEP)]));
     let mut child = workspace
         .command()
         .arg("grade")

@@ -3,8 +3,7 @@
 //! It is written separately from [`fosssim_model::sim`], and makes one of the documented mistakes of the [`CATALOGUE`]
 //! on request; the catalogue also contains correct variants. The sample program is this simulator with arguments and a
 //! file; `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**:
-//! verdicts come only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing; the sample
-//! program adds the actions of hostile programs.
+//! verdicts come only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing.
 //!
 //! The mathematics is that of `simulation.md` and `collisions.md`. The crates below supply the course's parts: the
 //! scene, the vectors, the linear solver and the root finder. They also supply the right polynomials, which mistakes

@@ -45,9 +45,8 @@ impl Record {
         }
     }
 
-    /// Appends the record's bytes (trace-format.md 3). `claim` replaces the number of polynomials if a program
-    /// misstates it.
-    pub fn encode(&self, claim: Option<i32>, bytes: &mut Vec<u8>) {
+    /// Appends the record's bytes (trace-format.md 3).
+    pub fn encode(&self, bytes: &mut Vec<u8>) {
         self.x.iter().chain(&self.v).for_each(|value| bytes.extend(value.to_le_bytes()));
         if let Some(impulses) = &self.impulses {
             bytes.extend(to_i32(impulses.len()).to_le_bytes());
@@ -62,7 +61,7 @@ impl Record {
             }
         }
         if let Some(polynomials) = &self.polynomials {
-            bytes.extend(claim.unwrap_or(to_i32(polynomials.len())).to_le_bytes());
+            bytes.extend(to_i32(polynomials.len()).to_le_bytes());
             for coefficients in polynomials {
                 bytes.extend(to_i32(coefficients.len()).to_le_bytes());
                 coefficients.iter().for_each(|coefficient| bytes.extend(coefficient.to_le_bytes()));
@@ -94,11 +93,11 @@ fn write_trace(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<
     let mut state = world.initial_state();
     let mut bytes = Vec::new();
     if !student.makes(Mistake::LogNoInitial) {
-        Record::new(student, &scene.collision, &state, &log).encode(None, &mut bytes);
+        Record::new(student, &scene.collision, &state, &log).encode(&mut bytes);
     }
     for _ in 0..scene.step_count() {
         let stepped = step(&world, &mut state, &mut log, &mut |state, log| {
-            Record::new(student, &scene.collision, state, log).encode(None, &mut bytes);
+            Record::new(student, &scene.collision, state, log).encode(&mut bytes);
         });
         if let Err(failure) = stepped {
             return Err((bytes, failure));

@@ -51,8 +51,6 @@ fosssim_num::closed_set! {
         Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
         /// The part of the program that writes the trace.
         Trace = "Trace", "Look at when the trace is written, and with which values; the simulation may be right.";
-        /// The start and the end of the program.
-        Process = "Program", "Look at how the program starts and ends.";
     }
     /// Returns a sentence about where in the program to look. It does not reveal the right formula.
     advice

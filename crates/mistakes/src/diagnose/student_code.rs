@@ -7,10 +7,10 @@ use fosssim_model::{
 use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 
 /// Returns whether a student of this milestone writes the code of the mistake, or submits its file. Every student can
-/// change the trace's contents, and the end of the program.
+/// change the trace's contents.
 pub fn is_written_by_student(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
-        (Area::Trace | Area::Process, _) | (Area::NearPairs, Part::NearPairs) => true,
+        (Area::Trace, _) | (Area::NearPairs, Part::NearPairs) => true,
         (Area::NearPairs, _) => false,
         _ if matches!(row.mistake, Mistake::Step(_)) => part.file() == changed_term(row).row().part.file(),
         (Area::Response | Area::ImpulseLoop, Part::Impulses) => true,
@@ -66,7 +66,7 @@ mod tests {
         assert!(writes("penalty-sign", Assignment::T2M1));
         for row in all_rows() {
             // The contest's student writes the search for pairs.
-            let is_own = matches!(row.area, Area::NearPairs | Area::Trace | Area::Process);
+            let is_own = matches!(row.area, Area::NearPairs | Area::Trace);
             assert_eq!(is_written_by_student(row, Assignment::T2M3), is_own, "{}", row.id);
             let is_of_collisions = !matches!(row.mistake, Mistake::Step(_));
             assert_eq!(is_written_by_student(row, Assignment::T2M2), is_of_collisions, "{}", row.id);

@@ -1,8 +1,7 @@
 //! Everything that a student's program can do differently, one row each.
 //!
-//! There are three kinds of rows: `wrong` programs have a mistake and write a different trace; `variant`s are correct
-//! except for round-off or a positive factor; `hostile` programs attack the grader. The place in the simulation where a
-//! mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
+//! There are two kinds of rows: `wrong` programs have a mistake and write a different trace; `variant`s are correct
+//! except for round-off or a positive factor. The place in the simulation where a mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
 //! are in [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
 pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
@@ -15,8 +14,6 @@ fosssim_num::closed_set! {
         Wrong = "wrong",
         /// The program is correct, and computes the same mathematics with other arithmetic.
         Variant = "variant",
-        /// The program harms itself or others.
-        Hostile = "hostile",
     }
 }
 
@@ -27,7 +24,7 @@ pub struct MistakeRow<M> {
     pub mistake: M,
     /// The mistake's id for users.
     pub id: &'static str,
-    /// The kind of the row: wrong, correct or hostile.
+    /// The kind of the row: wrong or correct.
     pub kind: RowKind,
     /// The area of the assignment in which the mistake is made.
     pub area: Area,

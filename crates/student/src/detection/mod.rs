@@ -291,9 +291,7 @@ pub fn detect_contacts(
 
 /// Returns whether a time of impact is within the step.
 fn is_within_step(student: Student, time: f64, time_step: f64) -> bool {
-    let is_of_time = |mistake: &Mistake| {
-        [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTION_MISTAKES.contains(mistake)
-    };
+    let is_of_time = |mistake: &Mistake| mistake.area() == Area::Decision && !REJECTION_MISTAKES.contains(mistake);
     match student.mistakes().find(is_of_time) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
         Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
@@ -303,7 +301,7 @@ fn is_within_step(student: Student, time: f64, time_step: f64) -> bool {
         Some(Mistake::DecisionHalfStep) => time <= 0.5,
         Some(Mistake::DecisionTolerance) => time <= 1.0 + 1e-6,
         Some(Mistake::DecisionTruth) => time != 0.0,
-        Some(Mistake::DecisionNever | Mistake::HostileForgedVerdict) => false,
+        Some(Mistake::DecisionNever) => false,
         _ => time <= 1.0,
     }
 }

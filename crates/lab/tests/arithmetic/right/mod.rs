@@ -105,5 +105,5 @@ pub fn start(scene: &Scene) -> State {
 /// Appends the record of a state.
 pub fn record(scene: &Scene, state: &State, contacts: &[Contact], bytes: &mut Vec<u8>) {
     let log = StepLog { impulses: contacts.to_vec(), ..StepLog::default() };
-    Record::new(Student::default(), &scene.collision, state, &log).encode(None, bytes);
+    Record::new(Student::default(), &scene.collision, state, &log).encode(bytes);
 }

@@ -5,7 +5,7 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKindMap, pairs},
 };
-use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
+use fosssim_student::{Area, Mistake, Row, StepMistake, Term, all_rows};
 
 /// The maximum number of pairs in a scene. In larger scenes, penalty forces between distant bodies are not tried.
 const MAX_DISTANT_PAIRS: usize = 5_000;
@@ -14,16 +14,17 @@ const MAX_DISTANT_PAIRS: usize = 5_000;
 /// student of the scene's assignment. Missing records and nearby pairs are searched separately
 /// ([`near`](super::super::near)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
-    let is_tried = |row: &&Row| {
-        let is_elsewhere =
-            row.area == Area::NearPairs || matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
-        row.kind != RowKind::Hostile && !is_elsewhere
-    };
+    let is_elsewhere =
+        |row: &Row| row.area == Area::NearPairs || matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
     let is_theirs = move |row: &&Row| is_written_by_student(row, assignment);
     let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MAX_DISTANT_PAIRS;
     let is_cheap = move |row: &&Row| is_small || !checks_distant_pairs(row);
-    all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| is_applicable(scene, &counts, row))
+    all_rows()
+        .filter(move |row| !is_elsewhere(row))
+        .filter(is_theirs)
+        .filter(is_cheap)
+        .filter(move |row| is_applicable(scene, &counts, row))
 }
 
 /// Returns whether a penalty force with this mistake checks all pairs, even distant ones.
@@ -48,7 +49,7 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
         return may_change_states(scene, counts, row);
     }
     let has_stage = match (&scene.collision, row.area) {
-        (_, Area::Trace | Area::Process) => true,
+        (_, Area::Trace) => true,
         (Collision::None | Collision::Penalty { .. }, _) => false,
         (Collision::Simple { .. }, area) => area == Area::Decision,
         (Collision::ContinuousTime { .. }, area) => {
@@ -102,7 +103,7 @@ mod tests {
         scenes.extend(others);
         for scene in scenes {
             let right = record_trace(&scene, Student::default()).ok();
-            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !may_change_trace(&scene, row);
+            let is_left_out = |row: &&Row| !may_change_trace(&scene, row);
             for row in all_rows().filter(is_left_out) {
                 left_out += 1;
                 assert!(record_trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);

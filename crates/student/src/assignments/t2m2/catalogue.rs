@@ -1,4 +1,4 @@
-//! Mistakes and variants of a student's program in collision handling, in its trace, and as a process.
+//! Mistakes and variants of a student's program in collision handling and in its trace.
 use super::{
     super::{
         rows::{MistakeRow, rows},
@@ -510,27 +510,6 @@ rows! {
     }
     Variant Trace {
         LogImpulsesReversed "impulses-reversed";
-    }
-    Hostile Process "sentences/hostile.txt" {
-        HostileExitOne "exit-one";
-        HostileExitMidway "exit-midway";
-        HostileCrash "crash-midway";
-        HostileLoop "endless-loop";
-        HostileSleep "sleep-forever";
-        HostileFloodStdout "flood-stdout";
-        HostileFloodStderr "flood-stderr";
-        HostileFloodTrace "flood-trace";
-        HostileEscapes "escape-codes";
-        HostileForgedVerdict "forged-verdict";
-        HostileTrailingBytes "trailing-bytes";
-        HostileTruncated "truncated-trace";
-        HostileNoOutput "no-output";
-        HostileEmptyTrace "empty-trace";
-        HostileHugeCounts "huge-counts";
-        HostileNegativeCounts "negative-counts";
-        HostileNanState "nan-state";
-        HostileChildren "leaves-children";
-        HostileMemory "hog-memory";
     }
 }
 
