@@ -203,10 +203,13 @@ test("what is no trace, and a broken scene, are told at once", async () => {
   for (const [content, words] of [
     ["Dear grader", /is not a trace: it looks like text/],
     ["", /is not a trace: it is empty/],
+    [Buffer.from(Array.from({ length: 4000 }, (_, k) => (k * 167 + (k >> 3) * 59) % 256)), /it begins with numbers/],
   ]) {
     writeFileSync(join(folder, "notes.bin"), content);
     await drop(page, join(folder, "notes.bin"));
     assert.match(await readStatus(page), words);
+    const [said, steps] = await Promise.all(["#said", "#check .steps"].map((one) => page.locator(one).boundingBox()));
+    assert.ok(said.y < steps.y, "the reason is next to the drop");
   }
   await page.reload();
   await page.waitForSelector("html[data-ready]");
@@ -322,6 +325,12 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     await page.keyboard.press("End");
     await page.waitForSelector("html[data-looked]");
     await looks();
+    if (width === 390) {
+      // The picture stays while the last slider is moved.
+      await page.locator("#numbers input").last().scrollIntoViewIfNeeded();
+      const box = await page.locator("#pair svg[viewBox]").first().boundingBox();
+      assert.ok(box.y >= 0 && box.y + box.height < 844, JSON.stringify(box));
+    }
     await page.keyboard.press("Home");
     assert.equal(await page.evaluate(() => document.activeElement.id), "tab-check");
     // One key reads the last trace again.
@@ -347,7 +356,7 @@ test("a report's smallest scenes are tried with one drop", async () => {
   await drag(page, [join(folder, "report.html")]);
   await page.locator("#try-said", { hasText: "1 step, 3 particles, 1 edge" }).waitFor();
   assert.match(await page.locator("#source").inputValue(), /^<scene>/);
-  assert.equal(await page.locator("#start option:checked").innerText(), "smallest scene 1");
+  assert.equal(await page.locator("#start").inputValue(), "smallest scene 1");
   writeFileSync(join(folder, "other.html"), "<p>nothing</p>");
   await page.locator("#open-xml").setInputFiles(join(folder, "other.html"));
   await page.locator("#try-said", { hasText: "other.html has no smallest scene" }).waitFor();
@@ -489,12 +498,31 @@ test("what is dragged onto the page is taken, whichever tab is open: a trace, a 
   await close();
 });
 
+test("a scene with errors from the first moment on is not said to be in the picture", async () => {
+  const { page, close } = await openPage(browser, html);
+  await page.evaluate(() => {
+    document.getElementById("tab-try").click();
+    const source = document.getElementById("source");
+    source.value = "<scene>";
+    source.dispatchEvent(new Event("input"));
+  });
+  await page.waitForSelector("html[data-tried]");
+  assert.match(await page.locator("#try-said").innerText(), /^\d+ errors?\.$/);
+  // A name that is no scene's is taken back.
+  await page.locator("#start").fill("nothing");
+  await page.locator("#source").focus();
+  assert.equal(await page.locator("#start").inputValue(), "a small scene");
+  await close();
+});
+
 test("a scene is written: messages in place, its motion, and files that are the program's", async () => {
   const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-try").click();
   await page.waitForSelector("#canvas[data-step]");
   const before = await page.locator("#source").inputValue();
-  await page.locator("#start").selectOption("ContinuousTimeTests/head-on-equal-masses");
+  // A scene is found by typing a part of its name.
+  await page.locator("#start").fill("ContinuousTimeTests/head-on-equal-masses");
+  await page.locator("#start").press("Enter");
   await page.waitForFunction((before) => {
     const { value } = document.getElementById("source");
     return value !== before && document.documentElement.dataset.tried === String(value.length);

@@ -126,7 +126,7 @@ async function judge() {
     const [json, html] = answer.parts;
     check.report = { name: removeExtension(file.name), json, html };
     $("frame").srcdoc = decodeText(html);
-    const hadFocus = $("ask").contains(document.activeElement);
+    const hadFocus = document.activeElement?.closest("#ask, #check > .steps");
     $("ask").open = false;
     $("frame").hidden = $("doing").hidden = $("save-html").hidden = $("save-json").hidden = false;
     if (hadFocus) $("again").focus();

@@ -18,22 +18,28 @@ const STARTER = `<scene>
 </scene>
 `;
 
+// The scenes to begin with, by the names that the reader types or chooses.
+const starts = new Map();
+function addStart(name, openScene) {
+  starts.set(name, openScene);
+  $("starts").append(el("option", { value: name }));
+}
+
 function editScene(xml, name) {
   film.name = name;
   $("source").value = xml;
   simulateChange();
 }
-// The smallest scenes of a dropped report become options of the list.
+// The smallest scenes of a dropped report are added to the list.
 async function openSceneFile(file) {
   if (!file) return;
   const content = await file.text();
   if (!isReport(file)) return editScene(content, file.name);
   const report = new DOMParser().parseFromString(content, "text/html");
   const scenes = [...report.querySelectorAll('pre[aria-label="The scene"]')].map((pre) => pre.textContent);
-  const options = scenes.map((xml, number) => el("option", { value: xml }, `smallest scene ${number + 1}`));
   if (!scenes.length) return ($("try-said").textContent = `${file.name} has no smallest scene.`);
-  $("start").append(el("optgroup", { label: file.name }, ...options));
-  $("start").value = scenes[0];
+  scenes.forEach((xml, number) => addStart(`smallest scene ${number + 1}`, () => editScene(xml, "small.xml")));
+  $("start").value = "smallest scene 1";
   editScene(scenes[0], "small.xml");
 }
 
@@ -99,7 +105,9 @@ function showResult(value) {
   film.now = isValid ? value : null;
   for (const id of ["play", "step", "save-png", "save-svg", "save-gif", "save-trace"]) $(id).disabled = !isValid;
   if (!isValid) {
-    $("try-said").textContent = `${formatCount(errorCount, "error")}: the picture shows the last scene without errors.`;
+    $("try-said").textContent =
+      formatCount(errorCount, "error") +
+      ($("canvas").dataset.step ? ": the picture shows the last scene without errors." : ".");
     return;
   }
   $("try-said").textContent =
@@ -221,15 +229,31 @@ $("open-xml").addEventListener("change", ({ target }) => {
   openSceneFile(target.files[0]);
   target.value = "";
 });
-$("start").addEventListener("change", async ({ target }) => {
-  if (!target.value) return editScene(STARTER, "scene.xml");
-  if (target.value.startsWith("<")) return editScene(target.value, "small.xml");
-  const own = findCourseScene(target.value);
-  if (own) return editScene(own.xml, own.name);
-  const { parts } = await film.oracle.ask({ do: "scene", name: target.value });
-  editScene(decodeText(parts[0]), `${target.value}.xml`);
+const start = () => starts.get($("start").value)?.();
+$("start").addEventListener("change", start);
+// Browsers report a choice in the list as the insertion of a whole text.
+$("start").addEventListener("input", ({ inputType }) => {
+  if (!inputType || inputType === "insertReplacementText") start();
 });
-addSceneOptions($("start"));
+// The list shows all scenes until something is typed.
+$("start").addEventListener("focus", ({ target }) => {
+  target.placeholder = target.value;
+  target.value = "";
+});
+$("start").addEventListener("blur", ({ target }) => {
+  if (!starts.has(target.value)) target.value = target.placeholder;
+});
+addStart("a small scene", () => editScene(STARTER, "scene.xml"));
+for (const { name, xml } of course?.scenes ?? []) addStart(name.replace(/\.xml$/, ""), () => editScene(xml, name));
+embeddedScenes.then((assignments) => {
+  for (const { groups } of assignments)
+    for (const { group, names } of groups)
+      for (const scene of names)
+        addStart(`${group}/${scene}`, async () => {
+          const { parts } = await film.oracle.ask({ do: "scene", name: `${group}/${scene}` });
+          editScene(decodeText(parts[0]), `${group}/${scene}.xml`);
+        });
+});
 panelActions.set("try", () => {
   if (!$("source").value) editScene(STARTER, "scene.xml");
 });

@@ -56,8 +56,17 @@ pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     }
     let begins = |name: &&str| library::scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
     let scenes: Vec<_> = library::names().filter(begins).collect();
-    let kind = detect_file_kind(&start[..start.len().min(SNIFFED_BYTES as usize)]);
+    let kind = detect_file_kind(&start[..start.len().min(SNIFFED_BYTES as usize)])
+        .or_else(|| (!begins_with_positions(&start)).then_some("begins with numbers that cannot be positions"));
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
+}
+
+/// Returns whether at least half of the first numbers have the size of positions and velocities. Arbitrary bytes are
+/// mostly extremely large or small numbers.
+fn begins_with_positions(start: &[u8]) -> bool {
+    let numbers = start.as_chunks::<8>().0.iter().take(4).map(|bytes| f64::from_le_bytes(*bytes).abs());
+    let (usual, others): (Vec<f64>, Vec<f64>) = numbers.partition(|size| *size == 0.0 || (1e-9..1e9).contains(size));
+    usual.len() >= others.len()
 }
 
 /// Returns whether a trace that begins with these bytes may belong to the scene.
