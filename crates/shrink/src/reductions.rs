@@ -59,10 +59,8 @@ fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool)
 fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<Scene>> {
     let with = |collision: Collision| Scene { collision, ..scene.clone() };
     let mut all = Vec::new();
-    if let Collision::Hybrid { restitution, stiffness, thickness, .. } = scene.collision {
+    if let Collision::Hybrid { restitution, .. } = scene.collision {
         all.push(with(Collision::ContinuousTime { restitution }));
-        let few = [0, 1].map(|max_iterations| Collision::Hybrid { restitution, stiffness, thickness, max_iterations });
-        all.extend(few.map(with));
     }
     all.push(with(Collision::None));
     let plain = [Integrator::ExplicitEuler, Integrator::SymplecticEuler, Integrator::LinearizedImplicitEuler];
@@ -75,22 +73,18 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     (index == 0).then_some(all)
 }
 
-/// Moves a body or a half-plane to the origin, makes bodies faster so that their numbers can be rounded, and rounds all
-/// numbers.
+/// Moves a body or a half-plane to the origin, and rounds all numbers.
 fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let bodies = scene.particles.iter().map(|particle| particle.position);
     let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
     let mut all = Vec::new();
     for decimals in 0..=2 {
-        for (origin, factor) in places.clone().flat_map(|place| [1.0, 2.0, 10.0, 100.0].map(|factor| (place, factor))) {
+        for origin in places.clone() {
             let mut components = [origin.x, origin.y].into_iter().cycle();
             all.push(map_numbers(scene, |kind, value| {
-                let value = match kind {
-                    NumberKind::Place => value - components.next().unwrap_or_default(),
-                    NumberKind::Velocity => value * factor,
-                    _ => value,
-                };
-                round(value, decimals)
+                let is_place = kind == NumberKind::Place;
+                let origin = if is_place { components.next().unwrap_or_default() } else { 0.0 };
+                round(value - origin, decimals)
             }));
         }
     }
@@ -115,8 +109,7 @@ fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>
     let mut copy = scene.clone();
     let (kind, value) = list_numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
     let plain = [kind.simplest_value(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
-    let whole = [value.trunc(), value.trunc() + value.signum()];
-    let new = plain.into_iter().chain(whole).chain((0..=4).map(|decimals| round(value, decimals)));
+    let new = plain.into_iter().chain((0..=4).map(|decimals| round(value, decimals)));
     let with = |new: f64| {
         let mut number = 0..;
         map_numbers(scene, |_, value| if number.next() == Some(index) { new } else { value })

@@ -18,9 +18,7 @@ const MAX_GROWTH: f64 = 1e4;
 pub(crate) enum NumberKind {
     /// The number is a coordinate of a place. A scene has no origin of its own.
     Place,
-    /// The number is a component of a velocity.
-    Velocity,
-    /// The number is 0 in the simplest case, such as a thickness or a component of a force.
+    /// The number is 0 in the simplest case, such as a thickness or a component of a velocity.
     Addition,
     /// The number is 1 in the simplest case, such as a mass or the time step.
     Factor,
@@ -36,7 +34,7 @@ impl NumberKind {
 /// Returns all numbers of a scene in its order, the time step first. A caller that changes the time step sets the
 /// duration as well.
 pub(crate) fn list_numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
-    use NumberKind::{Addition, Factor, Place, Velocity};
+    use NumberKind::{Addition, Factor, Place};
     let mut all = vec![(Factor, &mut scene.time_step)];
     match &mut scene.collision {
         Collision::None => {}
@@ -51,7 +49,7 @@ pub(crate) fn list_numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
     }
     for particle in &mut scene.particles {
         all.extend(particle.position.iter_mut().map(|value| (Place, value)));
-        all.extend(particle.velocity.iter_mut().map(|value| (Velocity, value)));
+        all.extend(particle.velocity.iter_mut().map(|value| (Addition, value)));
         all.extend([(Factor, &mut particle.mass), (Factor, &mut particle.radius)]);
     }
     all.extend(scene.edges.iter_mut().map(|edge| (Factor, &mut edge.radius)));
@@ -105,7 +103,7 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     let handling = match scene.collision {
         Collision::None => 0,
         Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
-        Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
+        Collision::Hybrid { .. } => 2,
     };
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
     let (events, end) = simulate(scene).unwrap_or_default();
