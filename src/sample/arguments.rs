@@ -10,9 +10,6 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The environment variable that names a mistake for the sample to make.
-const MISTAKE_VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
-
 /// The prefix of a name. If the program is called by this prefix and the id of a mistake, it makes that mistake.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
@@ -24,10 +21,9 @@ const MAX_COUNT: usize = Student::MAX_MISTAKES;
 #[command(
     name = "fosssim-sample",
     version,
-    after_help = "The environment variable FOSSSIM_SAMPLE_MISTAKE can name the mistake, too, and so can a copy or \
-                  link of this program that is called fosssim-sample.ID. --mistake has precedence over the name, and \
-                  the name over the variable. `fosssim-oracle demo --program FILE` writes a copy that makes \
-                  its mistake in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, \
+    after_help = "A copy or link of this program that is called fosssim-sample.ID makes this mistake, too, unless \
+                  --mistake names another. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake \
+                  in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, \
                   3 the course's program would never have ended"
 )]
 pub struct Options {
@@ -68,8 +64,8 @@ impl Options {
     }
 }
 
-/// Returns a student who makes the pinned mistakes. If there are none, the mistakes are those that the command line,
-/// the program's name, or the environment selects.
+/// Returns a student who makes the pinned mistakes. If there are none, the mistakes are those that the command line
+/// or the program's name selects.
 fn student_from_options(
     pinned: Option<&str>,
     option: Option<String>,
@@ -84,8 +80,6 @@ fn student_from_options(
         ("--mistake", ids)
     } else if let Some(ids) = find_mistake_in_name(program) {
         ("the program's name", ids)
-    } else if let Some(ids) = std::env::var(MISTAKE_VARIABLE).ok().filter(|ids| !ids.is_empty()) {
-        (MISTAKE_VARIABLE, ids)
     } else {
         return Ok(Student::default());
     };
