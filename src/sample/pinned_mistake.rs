@@ -48,7 +48,7 @@ fn read(place: &PinSlot) -> Option<&str> {
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = std::hint::black_box(MARK_BACKWARDS);
     mark.reverse();
-    let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(i, _)| i);
+    let mut found = memchr::memmem::find_iter(program, &mark);
     let (Some(start), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
     let room = copy.get_mut(start + mark.len()..start + SLOT_BYTES)?;

@@ -4,6 +4,7 @@
 //! right submission. Landlock can only allow files, not forbid them. Therefore, if a folder contains such a file, its
 //! other entries are allowed one by one.
 
+use memchr::memmem::Finder;
 use std::{
     collections::{BTreeMap, BTreeSet},
     ffi::OsStr,
@@ -111,13 +112,14 @@ fn has_mark(mut bytes: impl Read) -> io::Result<bool> {
     let mut mark = std::hint::black_box(MARK_BACKWARDS).to_vec();
     mark.reverse();
     mark.push(0);
+    let mark = Finder::new(&mark);
     let mut window = Vec::new();
     while bytes.by_ref().take(MARK_WINDOW).read_to_end(&mut window)? > 0 {
-        if window.windows(mark.len()).any(|bytes| bytes == mark) {
+        if mark.find(&window).is_some() {
             return Ok(true);
         }
         // The mark may begin in one window and end in the next.
-        window.drain(..window.len().saturating_sub(mark.len()));
+        window.drain(..window.len().saturating_sub(mark.needle().len()));
     }
     Ok(false)
 }
