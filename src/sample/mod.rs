@@ -5,7 +5,6 @@
 //! and so does every copy of the program with a [pinned](pinned_mistake) mistake.
 #![expect(
     clippy::disallowed_methods,
-    clippy::disallowed_types,
     reason = "the rules are for libraries; a student's program may open files and call any function"
 )]
 

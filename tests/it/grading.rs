@@ -67,7 +67,7 @@ fn submit_scripts(workspace: &Workspace, programs: &[(&str, &str)]) -> Vec<Strin
     let group = format!("[[group]]\nname = \"Zones\"\nscenes = [\"asset:{SCRIPTED_SCENE}\"]\npoints = 10\n");
     workspace.write("scripts.toml", format!("{suite}{group}"));
     let scene = library::scene(SCRIPTED_SCENE).expect("an embedded scene");
-    let scene = fosssim_oracle::scene::read(SCRIPTED_SCENE, &scene).expect("a scene").scene;
+    let scene = fosssim_oracle::scene::read(SCRIPTED_SCENE, scene).expect("a scene").scene;
     let trace = student::record_trace(&scene, Student::default()).expect("a trace");
     let write = |bytes: &[u8]| {
         let octal: String = bytes.iter().map(|byte| format!("\\{byte:03o}")).collect();
