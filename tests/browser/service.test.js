@@ -281,7 +281,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     await checkAccessibility(page);
   }
   await checkWidth(page, places);
-  // On a phone, the page above is one link, and nothing of a class is cut.
+  // On a phone, only the page above is linked.
   await page.setViewportSize({ width: 390, height: 844 });
   for (const [place, above] of [
     ["/c/physics", "Courses"],

@@ -96,16 +96,15 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
 
 /// Groups students by the value that `key` returns for their submissions. The largest groups are first.
 fn find_clusters(standings: &[ShortStanding], key: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<StudentCluster> {
-    let mut found: BTreeMap<&str, (Vec<(String, String)>, i64)> = BTreeMap::new();
+    let mut found: BTreeMap<&str, StudentCluster> = BTreeMap::new();
     for standing in standings {
         let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, key(counts)?))) else {
             continue;
         };
         let student = (standing.login.clone(), standing.name.clone());
-        found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(student);
+        found.entry(name).or_insert_with(|| (name.to_owned(), Vec::new(), counts.id)).1.push(student);
     }
-    let mut found: Vec<StudentCluster> =
-        found.into_iter().map(|(name, (students, first))| (name.to_owned(), students, first)).collect();
+    let mut found: Vec<StudentCluster> = found.into_values().collect();
     found.sort_by_key(|(_, students, _)| Reverse(students.len()));
     found
 }
