@@ -5,7 +5,7 @@ use super::{key::ResultKey, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
 /// The version of the schema of stored results.
-const FORM_VERSION: u32 = 7;
+const FORM_VERSION: u32 = 6;
 
 /// A stored result. The version comes first, because it determines the schema of everything else.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,5 +1,5 @@
 //! Data types for the exact form of a fault. The exact form may reveal a right formula.
-use super::{area::Area, reading::Reading, subject::Subject};
+use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -145,6 +145,32 @@ pub enum StageDetail {
     Order,
     /// All changes are multiplied by the same factor.
     Factor(#[serde(with = "fosssim_num::number_serde")] f64),
+    /// The range of the times of impact, as fractions of the step.
+    Impacts {
+        /// Whether the range is that of contacts whose responses are right.
+        right: bool,
+        /// The number of contacts in the range.
+        count: usize,
+        /// The earliest time of impact.
+        #[serde(with = "fosssim_num::number_serde")]
+        low: f64,
+        /// The latest time of impact.
+        #[serde(with = "fosssim_num::number_serde")]
+        high: f64,
+    },
+    /// The lengths of contact vectors along the right vectors, divided by the lengths of the right ones.
+    Vectors(Ratios),
+    /// The largest error of a contact vector, relative to its length.
+    #[serde(rename = "VectorsOff")]
+    VectorError(#[serde(with = "fosssim_num::number_serde")] f64),
+    /// The times of impact, divided by the right ones.
+    Times(Ratios),
+    /// The largest error of a time of impact, as a fraction of the step.
+    #[serde(rename = "TimesOff")]
+    TimeError(#[serde(with = "fosssim_num::number_serde")] f64),
+    /// The times of impact are right, but are not used as they should be.
+    #[serde(rename = "TimesUsed")]
+    TimeUse,
     /// The number of detection passes in the impulse rounds is wrong.
     Passes {
         /// The number of passes that the step should have.
@@ -154,4 +180,58 @@ pub enum StageDetail {
         /// The number of rounds that the scene allows.
         most: i32,
     },
+    /// The changes of a quantity by isolated contacts.
+    Change {
+        /// The quantity that changes, and the body that it belongs to.
+        changed: ChangedQuantity,
+        /// The difference between the change and the right one.
+        amount: Amount,
+        /// Whether the quantity also changes at a right angle to the contact vector.
+        across: bool,
+        /// The number of contacts that change the quantity by a wrong amount.
+        wrong: usize,
+        /// The number of contacts that were compared.
+        of: usize,
+    },
+    /// The number of zones that have the fault.
+    #[serde(rename = "OfZones")]
+    ZoneCount {
+        /// The number of zones that have the fault.
+        count: usize,
+        /// The number of zones that were compared.
+        of: usize,
+    },
+    /// The velocities of zones that should stop, divided by their velocities before.
+    #[serde(rename = "Stopped")]
+    StoppedVelocities(Ratios),
+    /// The motion of the center of mass, divided by the right motion.
+    #[serde(rename = "CenterMoves")]
+    CenterMotion(Ratios),
+    /// The center of mass moves in a wrong direction.
+    CenterDirection,
+    /// The rotation of zones, divided by the right rotation.
+    #[serde(rename = "Turns")]
+    Rotations(Ratios),
+    /// The velocities of zones, divided by their displacement per step size.
+    Velocities(Ratios),
+}
+
+/// The change of a quantity by a contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Amount {
+    /// The quantity should not change, but does.
+    Unwanted,
+    /// The change along the contact vector is right.
+    Right,
+    /// The change along the contact vector, divided by the right change.
+    Ratio(Ratios),
+}
+
+/// Ratios of actual values to right ones.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Ratios {
+    /// All ratios are this number, up to round-off.
+    All(#[serde(with = "fosssim_num::number_serde")] f64),
+    /// The ratios are between these two numbers.
+    Between(#[serde(with = "fosssim_num::number_serde")] f64, #[serde(with = "fosssim_num::number_serde")] f64),
 }

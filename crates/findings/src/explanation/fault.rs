@@ -47,20 +47,60 @@ pub enum StageFault {
         /// The fault of the contact vectors.
         wrong: WrongVectors,
     },
-    /// The contacts of a step of `continuous-time` are right, but the states after them are wrong.
-    Responses,
+    /// Contacts that share no body with other contacts change states wrongly.
+    Responses {
+        /// The kind of the affected pairs, if all have the same kind and pairs of other kinds are right.
+        kind: Option<PairKind>,
+        /// The fault of the changes.
+        wrong: WrongResponses,
+        /// Whether the fault occurs only in impulse rounds, each of which starts from the states that the round before
+        /// has changed.
+        in_rounds: bool,
+    },
+    /// After several contacts in one step the state is wrong, although isolated contacts are right.
+    ManyContacts,
+    /// Contacts of the first impulse round have no effect.
+    Unresolved {
+        /// Whether no contact of the first round has an effect; otherwise some contacts have an effect.
+        all: bool,
+    },
     /// The number of impulse rounds is wrong.
     Rounds(WrongNumber),
-    /// The polynomials of all impulse rounds are right, but the state after them is wrong.
-    HandedOver,
-    /// The polynomials of the first impulse round are right, but those of the second one or the state are wrong.
+    /// The impulse rounds are right, but the values after them are wrong.
+    HandedOver {
+        /// The quantity that is wrong; `None` if both positions and velocities are.
+        quantity: Option<Quantity>,
+        /// The end of the loop after which the values are wrong; `None` if they are wrong after any end.
+        when: Option<LoopEnd>,
+        /// Whether wrong responses could also cause the fault.
+        or_response: bool,
+    },
+    /// The contacts of the first impulse round change states wrongly.
     FirstRound,
-    /// The polynomials of the second impulse round are right, but later ones or the state are wrong.
+    /// Several contacts of the first impulse round together change states wrongly, although isolated contacts are
+    /// right.
     LaterRounds,
+    /// In rounds after the first one, detection uses the predicted positions again.
+    RoundsOfPrediction,
+    /// The second detection is right, but the rounds after it are not.
+    BehindFirstRound,
     /// The geometric part runs when it should not, or does not run when it should.
     Geometric(WrongGeometric),
+    /// A detection pass of the geometric part starts from wrong positions.
+    ZonePositions(WrongPositions),
     /// The part of the step after the impulse rounds is wrong.
     AfterRounds,
+    /// In rounds after the first one, zones are wrong.
+    ZoneRounds(WrongZoneRounds),
+    /// The wrong zones are moved or stopped.
+    Zones(WrongZones),
+    /// The motion of zones is wrong.
+    Motion {
+        /// The faults of the zones' motion.
+        wrong: Vec<WrongMotion>,
+        /// Whether the fault could also be that the wrong zones are moved.
+        or_zones: bool,
+    },
 }
 
 /// The common properties of wrong changes of states.
@@ -164,6 +204,31 @@ fosssim_num::closed_set! {
     }
 }
 
+/// The fault of the changes that isolated contacts cause.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub enum WrongResponses {
+    /// The contacts change nothing.
+    Nothing,
+    /// These quantities do not change, although they should.
+    Unchanged(Vec<ChangedQuantity>),
+    /// These quantities also change at a right angle to the contact vector.
+    Across(Vec<ChangedQuantity>),
+    /// These quantities change along the contact vector by a wrong amount.
+    Amount(Vec<ChangedQuantity>),
+}
+
+/// A quantity that a contact changes, and the body that it belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+pub struct ChangedQuantity {
+    /// The kind of pair between which the contact is.
+    pub kind: PairKind,
+    /// The body to which the quantity belongs. 0 is the pair's first particle. 1 is the second particle, or the edge's
+    /// first endpoint. 2 is the edge's second endpoint.
+    pub body: usize,
+    /// The quantity that changes.
+    pub quantity: Quantity,
+}
+
 /// A quantity of a body's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
@@ -198,20 +263,116 @@ pub enum WrongGeometric {
     Superfluous,
 }
 
+fosssim_num::closed_set! {
+    /// The wrong positions that the geometric part starts from.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongPositions {
+        /// The first round starts from the positions that the integrator predicted.
+        Prediction =
+            "the first zones are searched on the predicted positions, not on those after the impulse rounds",
+        /// The first round starts from other positions than those after the impulse rounds.
+        First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
+        /// The detection after the failsafe starts from the positions before the failsafe.
+        BeforeFailsafe = "the detection after the failsafe uses the positions before it",
+    }
+}
+
+/// The reason why the impulse rounds end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum LoopEnd {
+    /// The loop has made its maximum number of rounds.
+    RanOut,
+    /// The loop has ended because no pair collides.
+    Settled,
+}
+
+fosssim_num::closed_set! {
+    /// The fault of the rounds in which zones grow.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongZoneRounds {
+        /// The zones are wrong after they have grown.
+        Growth = "zones are right in the first round, but not as they grow",
+        /// The zones grow in too few rounds.
+        Fewer = "the zones make fewer rounds than they should",
+        /// The zones grow in too many rounds.
+        More = "the zones make more rounds than they should",
+        /// From a later round on, the zones or the number of rounds are wrong.
+        Later = "the zones are right in the first round, but later rounds are wrong or too few",
+    }
+}
+
+fosssim_num::closed_set! {
+    /// The fault of the choice of zones that are moved or stopped.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongZones {
+        /// Some particles of a zone are not moved with the zone.
+        Partly = "some of a zone's particles are not moved with it",
+        /// Some particles do not stop, although their zone should stop.
+        PartlyStopped = "in zones that must stop, some particles do not",
+        /// Zones that should be moved are not.
+        Unmoved = "some zones that should move do not",
+        /// Zones that should be moved are stopped.
+        Stop = "zones stop although nothing in them is fixed",
+        /// Contacts that share particles are moved one after the other, instead of as one zone.
+        NotMerged = "zones that share particles are moved one after the other, not as one",
+        /// Zones that share no particle are moved as one zone.
+        Joined = "zones that share no particle are moved as one",
+        /// Particles are moved that do not belong to a zone.
+        Others = "zones move particles that do not belong to them",
+        /// Zones that should stop are moved as rigid bodies.
+        MoveOn = "zones that must stop move on as rigid bodies",
+        /// Zones that should stop keep their new positions.
+        KeepPositions = "zones that must stop do not go back to their start",
+        /// Zones that should stop keep some of their velocity.
+        KeepVelocities = "zones that must stop keep their velocities",
+    }
+}
+
+fosssim_num::closed_set! {
+    /// The fault of the motion of zones.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongMotion {
+        /// The center of mass of the zones moves wrongly.
+        Center = "the center of mass of a zone does not move as it should",
+        /// The distances between particles of a zone change.
+        Distances = "the distances between particles of a zone change",
+        /// The zones do not rotate, although they should.
+        NoTurn = "zones do not rotate",
+        /// The zones rotate less than they should.
+        LessTurn = "zones rotate too little",
+        /// The zones rotate more than they should.
+        MoreTurn = "zones rotate too much",
+        /// The zones rotate in the opposite direction.
+        TurnBack = "zones rotate in the opposite direction",
+        /// The zones rotate by a wrong angle.
+        Turn = "zones rotate by a wrong angle",
+        /// The velocities in the zones do not fit their motion.
+        Velocities = "velocities in a zone do not match its motion from start to end",
+        /// The velocities in the zones have the right directions, but the wrong speeds.
+        Speeds = "velocities in a zone have the direction of its motion from start to end, but the wrong size",
+    }
+}
+
 impl StageFault {
     /// Returns the stage of the step in which the fault is.
     pub const fn stage(&self) -> StepStage {
         match self {
             Self::Order | Self::Decisions { .. } | Self::ContactTimes | Self::Overlaps { .. } => StepStage::Detection,
             Self::ContactVectors { .. } => StepStage::ContactVectors,
-            Self::Responses
+            Self::Responses { .. }
             | Self::Change(_)
+            | Self::ManyContacts
+            | Self::Unresolved { .. }
             | Self::Rounds(_)
-            | Self::HandedOver
+            | Self::HandedOver { .. }
             | Self::FirstRound
             | Self::LaterRounds
+            | Self::RoundsOfPrediction
+            | Self::BehindFirstRound
             | Self::Geometric(_) => StepStage::Responses,
-            Self::AfterRounds => StepStage::Zones,
+            Self::AfterRounds | Self::ZonePositions(_) | Self::ZoneRounds(_) | Self::Zones(_) | Self::Motion { .. } => {
+                StepStage::Zones
+            }
         }
     }
 
@@ -229,23 +390,46 @@ impl StageFault {
                 ChangeCause::JacobiansOrIntegrator => &[Area::Jacobians, Area::Integrator],
             },
             Self::ContactVectors { .. } => &[Area::ContactVector],
-            Self::Responses => &[Area::Response],
-            // In a hybrid step, the trace contains no contacts.
+            Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
+            // In a hybrid step, the trace contains no contact vector.
+            Self::Responses { wrong: WrongResponses::Across(_), .. } => {
+                &[Area::ContactVector, Area::Response, Area::ImpulseLoop]
+            }
             Self::FirstRound => &[Area::Decision, Area::ContactVector, Area::Response, Area::ImpulseLoop],
-            Self::HandedOver => &[Area::Response, Area::ImpulseLoop],
-            Self::Rounds(_) | Self::LaterRounds => &[Area::ImpulseLoop, Area::Decision],
-            Self::Geometric(WrongGeometric::Left { always: false } | WrongGeometric::Superfluous) => {
+            Self::Unresolved { .. } => &[Area::Decision, Area::Response, Area::ImpulseLoop],
+            Self::Responses { .. } | Self::HandedOver { or_response: true, .. } => &[Area::Response, Area::ImpulseLoop],
+            Self::Rounds(_) | Self::BehindFirstRound => &[Area::ImpulseLoop, Area::Decision],
+            Self::HandedOver { or_response: false, .. }
+            | Self::LaterRounds
+            | Self::RoundsOfPrediction
+            | Self::Geometric(WrongGeometric::Left { always: false } | WrongGeometric::Superfluous) => {
                 &[Area::ImpulseLoop]
             }
             Self::Geometric(WrongGeometric::Left { always: true }) => &[Area::ImpulseLoop, Area::ImpactZones],
-            Self::AfterRounds => &[Area::ImpactZones, Area::Failsafe],
+            Self::ZonePositions(_)
+            | Self::ZoneRounds(WrongZoneRounds::Fewer | WrongZoneRounds::More)
+            | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
+                &[Area::ImpactZones]
+            }
+            // If a larger zone has a wrong effect, the code that moves it may also be the cause.
+            Self::AfterRounds
+            | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
+            | Self::Motion { or_zones: true, .. }
+            | Self::Zones(WrongZones::Unmoved | WrongZones::Stop | WrongZones::MoveOn | WrongZones::PartlyStopped) => {
+                &[Area::ImpactZones, Area::Failsafe]
+            }
+            Self::Zones(WrongZones::KeepPositions | WrongZones::KeepVelocities)
+            | Self::Motion { or_zones: false, .. } => &[Area::Failsafe],
         }
     }
 
     /// Returns the kind of pair; `None` if the fault concerns several kinds.
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
-            Self::Decisions { kind, .. } | Self::Overlaps { kind, .. } | Self::ContactVectors { kind, .. } => *kind,
+            Self::Decisions { kind, .. }
+            | Self::Overlaps { kind, .. }
+            | Self::ContactVectors { kind, .. }
+            | Self::Responses { kind, .. } => *kind,
             _ => None,
         }
     }
@@ -261,13 +445,25 @@ impl StageFault {
             Self::Change(_) => "stage-change",
             Self::ContactTimes => "stage-contact-times",
             Self::ContactVectors { .. } => "stage-contact-vectors",
-            Self::Responses => "stage-response",
-            Self::Rounds(_) => "stage-rounds",
-            Self::HandedOver => "stage-handed-over",
+            Self::Responses { .. } | Self::ManyContacts => "stage-response",
             Self::FirstRound => "stage-first-round",
-            Self::LaterRounds => "stage-later-rounds",
+            Self::Unresolved { .. } => "stage-unresolved",
+            Self::Rounds(_) => "stage-rounds",
+            Self::HandedOver { .. } => "stage-handed-over",
+            Self::LaterRounds => "stage-loop",
+            Self::RoundsOfPrediction => "stage-round-positions",
+            Self::BehindFirstRound => "stage-later-rounds",
             Self::Geometric(_) => "stage-geometric",
+            Self::ZonePositions(_) => "stage-zone-positions",
             Self::AfterRounds => "stage-zones",
+            Self::ZoneRounds(_) => "stage-zone-rounds",
+            Self::Zones(WrongZones::Partly | WrongZones::PartlyStopped) => "stage-zone-parts",
+            Self::Zones(WrongZones::Unmoved) => "stage-zones-unmoved",
+            Self::Zones(WrongZones::NotMerged) => "stage-zones-unmerged",
+            Self::Zones(WrongZones::Joined | WrongZones::Others) => "stage-zones-of-others",
+            Self::Zones(WrongZones::Stop) => "stage-zones-stop",
+            Self::Zones(WrongZones::MoveOn | WrongZones::KeepPositions | WrongZones::KeepVelocities) => "stage-stop",
+            Self::Motion { .. } => "stage-failsafe",
         }
     }
 }

@@ -11,11 +11,12 @@ pub mod topic;
 pub mod wrong_pairs;
 
 pub use area::Area;
-pub use detail::{Detail, PolynomialDetail, StageDetail, Substitute, Weight};
+pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeCause, ChangeRatio, ChangedParticles, NanStage, NonFiniteValue, Quantity, StageFault, StepStage, WrongChange,
-    WrongDecisions, WrongGeometric, WrongNumber, WrongVectors,
+    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity,
+    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
@@ -211,7 +212,7 @@ impl Explanation {
     pub const fn is_vague(&self) -> bool {
         matches!(
             self.topic,
-            ExplanationTopic::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::Responses)
+            ExplanationTopic::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts)
         )
     }
 

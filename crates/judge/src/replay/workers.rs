@@ -41,6 +41,7 @@ pub(super) struct Workers<'a> {
 }
 
 impl<'a> Workers<'a> {
+    #[expect(clippy::disallowed_methods, reason = "no result depends on the number of threads")]
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
         let Options { threads, root_search, judges_individually: one_by_one, .. } = *options;
         Self {

@@ -23,10 +23,11 @@ pub use corrected_trace::{CorrectedTrace, correct_trace};
 pub use excluded_mistakes::refuted_keys;
 pub use explain::{explain, explain_kept_trace};
 pub use fosssim_findings::explanation::{
-    ChangeCause, ChangeRatio, ChangedParticles, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue,
-    Explanation, ExplanationTopic, Guess, ListGuess, NanStage, NonFiniteValue, PairCounts, PolynomialDetail,
-    PolynomialEvidence, Quantity, QuantityGuess, StageDetail, StageFault, StepRecord, StepStage, Substitute, Weight,
-    WrongChange, WrongDecisions, WrongGeometric, WrongNumber, WrongPairs, WrongVectors,
+    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
+    ExamplePlace, ExampleValue, Explanation, ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue,
+    PairCounts, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
+    StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    WrongPairs, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{fault, guess, topic};
 pub use fosssim_student::{assignments::probe_scenes, formula_detector::find_formula};

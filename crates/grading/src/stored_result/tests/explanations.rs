@@ -1,9 +1,11 @@
 //! Explanations with every kind of value, and with unusual numbers.
 use super::{Role, pair};
 use fosssim_mistakes::diagnose::{
-    CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, ExplanationTopic, Guess, ListGuess,
-    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, QuantityGuess, StageDetail, StageFault, StepRecord,
-    Substitute, Weight, WrongDecisions, WrongGeometric, WrongNumber, WrongVectors,
+    Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
+    ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence,
+    Quantity, QuantityGuess, Ratios, StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions,
+    WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
+    WrongZones,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{
@@ -55,19 +57,32 @@ fn explanation(about: ExplanationTopic, details: Vec<Detail>, example: Option<Ex
 
 fn faults() -> Vec<StageFault> {
     let kind = Some(PairKind::ParticleHalfPlane);
+    let changed = || vec![ChangedQuantity { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity }];
     vec![
         StageFault::Order,
         StageFault::Decisions { kind, wrong: WrongDecisions::Superfluous },
         StageFault::ContactTimes,
         StageFault::ContactVectors { kind: None, wrong: WrongVectors::Perpendicular },
-        StageFault::Responses,
+        StageFault::Responses { kind, wrong: WrongResponses::Nothing, in_rounds: true },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Unchanged(changed()), in_rounds: false },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Across(changed()), in_rounds: true },
+        StageFault::Responses { kind: None, wrong: WrongResponses::Amount(changed()), in_rounds: false },
+        StageFault::ManyContacts,
+        StageFault::Unresolved { all: true },
         StageFault::Rounds(WrongNumber::More),
-        StageFault::HandedOver,
+        StageFault::HandedOver { quantity: Some(Quantity::Position), when: Some(LoopEnd::Settled), or_response: true },
+        StageFault::HandedOver { quantity: None, when: None, or_response: false },
         StageFault::FirstRound,
         StageFault::LaterRounds,
+        StageFault::RoundsOfPrediction,
+        StageFault::BehindFirstRound,
         StageFault::Geometric(WrongGeometric::Left { always: true }),
         StageFault::Geometric(WrongGeometric::Superfluous),
+        StageFault::ZonePositions(WrongPositions::First),
         StageFault::AfterRounds,
+        StageFault::ZoneRounds(WrongZoneRounds::Later),
+        StageFault::Zones(WrongZones::KeepVelocities),
+        StageFault::Motion { wrong: vec![WrongMotion::Center, WrongMotion::Speeds], or_zones: true },
     ]
 }
 
@@ -104,8 +119,27 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::Weight(weight(1e308)),
         PolynomialDetail::Alternative(vec![weight(0.1), weight(-0.0)]),
     ];
-    let stages =
-        [StageDetail::Order, StageDetail::Factor(-0.0), StageDetail::Passes { expected: 1, actual: 2, most: i32::MIN }];
+    let changed = ChangedQuantity { kind: PairKind::ParticleParticle, body: 0, quantity: Quantity::Position };
+    let change = |amount| StageDetail::Change { changed, amount, across: true, wrong: 1, of: 2 };
+    let stages = [
+        StageDetail::Order,
+        StageDetail::Impacts { right: true, count: 3, low: f64::INFINITY, high: f64::NEG_INFINITY },
+        StageDetail::Vectors(Ratios::All(-0.0)),
+        StageDetail::Times(Ratios::Between(f64::NEG_INFINITY, 0.3)),
+        StageDetail::VectorError(1e-300),
+        StageDetail::ZoneCount { count: 1, of: 3 },
+        StageDetail::TimeError(-1e-300),
+        StageDetail::TimeUse,
+        StageDetail::Passes { expected: 1, actual: 2, most: i32::MIN },
+        change(Amount::Unwanted),
+        change(Amount::Right),
+        change(Amount::Ratio(Ratios::All(1.5))),
+        StageDetail::StoppedVelocities(Ratios::All(0.5)),
+        StageDetail::CenterMotion(Ratios::All(0.5)),
+        StageDetail::CenterDirection,
+        StageDetail::Rotations(Ratios::All(0.5)),
+        StageDetail::Velocities(Ratios::All(0.5)),
+    ];
     let known = [
         Detail::Term("pp-no-two".into()),
         Detail::SearchArea(Area::Failsafe),

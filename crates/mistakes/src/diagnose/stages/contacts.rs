@@ -1,9 +1,9 @@
 //! Finds faults in the impulse lists of `continuous-time`: surplus and missing contacts, wrong vectors and times, and a
 //! wrong order of pairs.
 use super::{
-    Explanation, RATIO_TOLERANCE,
+    Explanation, RATIO_TOLERANCE, common_value,
     events::{Hit, StepFacts},
-    new_observation,
+    new_observation, range, ratios,
 };
 use crate::diagnose::{
     StageDetail, StageFault, WrongDecisions, WrongVectors,
@@ -70,11 +70,12 @@ const INEXACT_ERROR: f64 = 1e-5;
 /// The contacts of all steps, with those of the reference.
 #[derive(Default)]
 struct ContactStage {
-    /// The kinds of pairs of missed and of superfluous contacts.
-    missed_contacts: Vec<PairKind>,
-    superfluous_contacts: Vec<PairKind>,
+    /// The kinds and times of impact of right contacts.
+    right_contacts: Vec<(PairKind, f64)>,
+    missed_contacts: Vec<(PairKind, f64)>,
+    superfluous_contacts: Vec<(PairKind, f64)>,
     vectors: Vec<(PairKind, Vec2, Vec2)>,
-    wrong_time_count: usize,
+    times: Vec<(f64, f64)>,
 }
 
 /// Returns the fault in the contacts of `continuous-time`, if its polynomials are right.
@@ -82,11 +83,7 @@ pub(super) fn explain_detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.compare_step(facts));
     // A wrong time may also cause wrong decisions.
-    let times = (contacts.wrong_time_count > 0)
-        .then(|| new_observation(StageFault::ContactTimes, Vec::new(), contacts.wrong_time_count));
-    times
-        .or_else(|| contacts.explain_decisions(|kind, wrong| StageFault::Decisions { kind, wrong }))
-        .or_else(|| contacts.explain_vectors())
+    contacts.explain_times().or_else(|| contacts.explain_decisions()).or_else(|| contacts.explain_vectors())
 }
 
 /// Returns the fault in the contacts at the end of steps, each compared with the reference's. The first difference of a
@@ -103,13 +100,19 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
             (Some(one), Some(other)) if one.pair() == other.pair() => {
                 contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));
             }
-            (Some(one), _) if !has(theirs, one) => contacts.missed_contacts.push(one.pair()?.kind),
-            (_, Some(other)) => contacts.superfluous_contacts.push(other.pair()?.kind),
+            (Some(one), _) if !has(theirs, one) => contacts.missed_contacts.push((one.pair()?.kind, 0.0)),
+            (_, Some(other)) => contacts.superfluous_contacts.push((other.pair()?.kind, 0.0)),
             _ => {}
         }
     }
-    let decisions = contacts.explain_decisions(|kind, wrong| StageFault::Overlaps { kind, wrong });
-    decisions.or_else(|| contacts.explain_vectors())
+    let wrong = match (contacts.missed_contacts.is_empty(), contacts.superfluous_contacts.is_empty()) {
+        (true, true) => return contacts.explain_vectors(),
+        (false, true) => WrongDecisions::Missed,
+        (true, false) => WrongDecisions::Superfluous,
+        (false, false) => WrongDecisions::Both,
+    };
+    let listed = [contacts.missed_contacts.as_slice(), &contacts.superfluous_contacts].concat();
+    Some(new_observation(StageFault::Overlaps { kind: common_kind(&listed), wrong }, Vec::new(), listed.len()))
 }
 
 impl ContactStage {
@@ -135,16 +138,16 @@ impl ContactStage {
                     }
                     theirs.next();
                 }
-                Some((_, Some(at))) if at < hit.detection_index => {
+                Some((impulse, Some(at))) if at < hit.detection_index => {
                     if is_whole && is_certain(at) {
-                        self.superfluous_contacts.push(facts.detections[at].0.kind);
+                        self.superfluous_contacts.push((facts.detections[at].0.kind, impulse.time));
                     }
                     return;
                 }
                 Some((_, None)) => return,
                 _ => {
                     if is_certain(hit.detection_index) {
-                        self.missed_contacts.push(hit.pair.kind);
+                        self.missed_contacts.push((hit.pair.kind, hit.time));
                     }
                     return;
                 }
@@ -154,7 +157,7 @@ impl ContactStage {
             && let Some(at) = place(impulse).filter(|_| is_whole)
             && is_certain(at)
         {
-            self.superfluous_contacts.push(facts.detections[at].0.kind);
+            self.superfluous_contacts.push((facts.detections[at].0.kind, impulse.time));
         }
     }
 
@@ -163,21 +166,19 @@ impl ContactStage {
         let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
         if impulse_matches(&expected, impulse, &ROUND_OFF) {
+            self.right_contacts.push((kind, hit.time));
             return true;
         }
         // The contact vector is evaluated at the impact time, so a wrong time implies a wrong vector.
         if impulse_matches(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
             self.vectors.push((kind, hit.normal, impulse.normal));
         } else {
-            self.wrong_time_count += 1;
+            self.times.push((hit.time, impulse.time));
         }
         false
     }
 
-    fn explain_decisions(
-        &self,
-        new_fault: impl Fn(Option<PairKind>, WrongDecisions) -> StageFault,
-    ) -> Option<Explanation> {
+    fn explain_decisions(&self) -> Option<Explanation> {
         let wrong = match (self.missed_contacts.is_empty(), self.superfluous_contacts.is_empty()) {
             (true, true) => return None,
             (false, true) => WrongDecisions::Missed,
@@ -185,14 +186,26 @@ impl ContactStage {
             (false, false) => WrongDecisions::Both,
         };
         let listed = [self.missed_contacts.as_slice(), &self.superfluous_contacts].concat();
-        Some(new_observation(new_fault(common_kind(&listed), wrong), Vec::new(), listed.len()))
+        let kind = common_kind(&listed);
+        let is_rival = |(other, _): &&(PairKind, f64)| kind.is_none_or(|kind| kind == *other);
+        let rivals: Vec<(PairKind, f64)> = self.right_contacts.iter().filter(is_rival).copied().collect();
+        let impacts = |right: bool, contacts: &[(PairKind, f64)]| {
+            let (low, high) = range(contacts.iter().map(|(_, time)| *time));
+            StageDetail::Impacts { right, count: contacts.len(), low, high }
+        };
+        let details = match wrong {
+            WrongDecisions::Both => Vec::new(),
+            _ if rivals.is_empty() => vec![impacts(false, &listed)],
+            _ => vec![impacts(false, &listed), impacts(true, &rivals)],
+        };
+        Some(new_observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
     }
 
     fn explain_vectors(&self) -> Option<Explanation> {
         if self.vectors.is_empty() {
             return None;
         }
-        let listed: Vec<PairKind> = self.vectors.iter().map(|(kind, ..)| *kind).collect();
+        let listed: Vec<(PairKind, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
         let along: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
         let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let along = theirs.dot(ours) / ours.dot(ours) * *ours;
@@ -214,13 +227,34 @@ impl ContactStage {
             () if along.iter().all(|&ratio| ratio > 0.0) => WrongVectors::Length,
             () => WrongVectors::Direction,
         };
+        let details = match wrong {
+            WrongVectors::Inexact => vec![StageDetail::VectorError(parts().fold(0.0, f64::max))],
+            WrongVectors::Zero => Vec::new(),
+            _ => vec![StageDetail::Vectors(ratios(&along))],
+        };
         let fault = StageFault::ContactVectors { kind: common_kind(&listed), wrong };
-        Some(new_observation(fault, Vec::new(), listed.len()))
+        Some(new_observation(fault, details, listed.len()))
+    }
+
+    fn explain_times(&self) -> Option<Explanation> {
+        if self.times.is_empty() {
+            return None;
+        }
+        let shares: Vec<f64> =
+            self.times.iter().filter(|(ours, _)| *ours > 0.0).map(|(ours, theirs)| theirs / ours).collect();
+        let offsets: Vec<f64> = self.times.iter().map(|(ours, theirs)| theirs - ours).collect();
+        let mut details = Vec::new();
+        if !shares.is_empty() {
+            details.push(StageDetail::Times(ratios(&shares)));
+        }
+        details.extend(common_value(&offsets).map(StageDetail::TimeError));
+        details.push(StageDetail::TimeUse);
+        Some(new_observation(StageFault::ContactTimes, details, self.times.len()))
     }
 }
 
 /// Returns the kind that all contacts have in common.
-fn common_kind(listed: &[PairKind]) -> Option<PairKind> {
-    let first = *listed.first()?;
-    listed.iter().all(|kind| *kind == first).then_some(first)
+fn common_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
+    let first = listed.first()?.0;
+    listed.iter().all(|(kind, _)| *kind == first).then_some(first)
 }

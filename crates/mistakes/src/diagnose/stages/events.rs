@@ -6,7 +6,10 @@ use crate::diagnose::sampling::{
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State},
+    sim::{
+        Decision, Detection, ImpactTime, Observer, Pair, PairKind, Pass, Stage, State, SteeringObserver,
+        StepController, Zone,
+    },
     trace::PolynomialLog,
 };
 use fosssim_num::{bounded::BoundedValue, vector::Vec2};
@@ -17,6 +20,8 @@ pub(super) struct Hit {
     pub(super) pair: Pair,
     pub(super) normal: Vec2,
     pub(super) time: f64,
+    /// The pass that finds the contact, from 0.
+    pub(super) pass: usize,
     /// The index of the detection among all detections of the step.
     pub(super) detection_index: usize,
 }
@@ -27,26 +32,37 @@ pub(super) struct PassFacts {
     pub(super) stage: Stage,
     /// The index of the pass's first polynomial in the step.
     pub(super) first_polynomial: usize,
+    /// The end positions of particles when the pass begins.
+    pub(super) end_positions: Vec<f64>,
+}
+
+/// A zone that the reference moves.
+#[derive(Debug, Clone)]
+pub(super) struct ZoneFacts {
+    pub(super) round: u32,
+    pub(super) particles: Vec<usize>,
+    pub(super) has_half_plane: bool,
 }
 
 /// Events that the reference reports in addition to its records.
-#[derive(Debug)]
-struct StepEvents<'a> {
-    scene: &'a Scene,
+#[derive(Debug, Default)]
+struct Events {
     hits: Vec<Hit>,
     passes: Vec<PassFacts>,
+    zones: Vec<ZoneFacts>,
     detections: Vec<(Pair, usize)>,
     polynomial_count: usize,
     /// The approach polynomials of edges in the other accepted form, each with its index.
     other_forms: Vec<(usize, Vec<f64>)>,
 }
 
-impl<'a> StepEvents<'a> {
-    fn new(scene: &'a Scene) -> Self {
-        let (hits, passes, detections, other_forms) = Default::default();
-        Self { scene, hits, passes, detections, polynomial_count: 0, other_forms }
-    }
+#[derive(Debug)]
+struct StepEvents<'a> {
+    scene: &'a Scene,
+    events: Events,
+}
 
+impl StepEvents<'_> {
     /// Keeps the mathematically right approach polynomial of an edge, if it differs from the course's form.
     fn keep_other_form(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
@@ -58,41 +74,66 @@ impl<'a> StepEvents<'a> {
         if let Some(other) = expected.other_form(APPROACH_INDEX).map(values)
             && other != values(expected.polynomial(APPROACH_INDEX))
         {
-            self.other_forms.push((self.polynomial_count + APPROACH_INDEX, other));
+            self.events.other_forms.push((self.events.polynomial_count + APPROACH_INDEX, other));
         }
     }
 }
 
 impl Observer for StepEvents<'_> {
     fn begin_pass(&mut self, pass: Pass) {
-        let first = self.polynomial_count;
-        self.passes.push(PassFacts { stage: pass.stage, first_polynomial: first });
+        let first = self.events.polynomial_count;
+        self.events.passes.push(PassFacts { stage: pass.stage, first_polynomial: first, end_positions: Vec::new() });
+    }
+
+    fn observe_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
+        if let Some(pass) = self.events.passes.last_mut() {
+            pass.end_positions = q_end.to_vec();
+        }
     }
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.keep_other_form(detection);
+        let events = &mut self.events;
         if let Decision::Hit { time, normal } = detection.decision {
-            self.hits.push(Hit { pair: detection.pair, normal, time, detection_index: self.detections.len() });
+            let (pass, place) = (events.passes.len().saturating_sub(1), events.detections.len());
+            events.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
         }
-        self.detections.push((detection.pair, self.polynomial_count));
-        self.polynomial_count += detection.polynomials.len();
+        events.detections.push((detection.pair, events.polynomial_count));
+        events.polynomial_count += detection.polynomials.len();
+    }
+
+    fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        let particles = zone.particles.iter().map(|&particle| particle as usize).collect();
+        self.events.zones.push(ZoneFacts { round, particles, has_half_plane: zone.half_plane });
     }
 }
 
 /// The index of an edge's approach among its polynomials.
 const APPROACH_INDEX: usize = 3;
 
+/// Steers a step so that nothing collides.
+struct NoCollisions;
+
+impl StepController for NoCollisions {
+    fn adjust_decision(&mut self, _pair: Pair, _decision: Decision) -> Decision {
+        Decision::Miss { time: ImpactTime::Found(f64::INFINITY) }
+    }
+}
+
 /// A step of the submission, and the reference's.
 pub(super) struct StepFacts {
     /// Whether anything in the step differs.
     pub(super) is_wrong: bool,
     pub(super) before: State,
+    /// The state after the integrator, without collisions.
+    pub(super) prediction: State,
     pub(super) expected: StepRecords,
     pub(super) actual: StepRecords,
     /// The number of right polynomials before the first difference, or before the end of one of the lists.
     pub(super) right_polynomials: usize,
     pub(super) hits: Vec<Hit>,
     pub(super) passes: Vec<PassFacts>,
+    pub(super) zones: Vec<ZoneFacts>,
     /// All pairs in the order of detection, each with the index of its first polynomial.
     pub(super) detections: Vec<(Pair, usize)>,
 }
@@ -100,17 +141,29 @@ pub(super) struct StepFacts {
 impl StepFacts {
     /// Returns the facts about a step, or `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
-        let mut observers = (Capture::new(&scene.collision), StepEvents::new(scene));
+        let prediction = reference.step(kept.step, &kept.before, &mut SteeringObserver(NoCollisions))?.clone();
+        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, events: Events::default() });
         reference.step(kept.step, &kept.before, &mut observers)?;
-        let (capture, StepEvents { hits, passes, detections, other_forms, .. }) = observers;
+        let (capture, StepEvents { events, .. }) = observers;
         let (mut expected, actual) = (capture.records, kept.records.clone());
-        accept_other_forms(&mut expected, &actual, &other_forms);
+        accept_other_forms(&mut expected, &actual, &events.other_forms);
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
         let is_right = |(ours, theirs): &(&[f64], &[f64])| polynomial_matches(ours, theirs, &ROUND_OFF);
         let right_polynomials = ours.iter().zip(theirs.iter()).take_while(is_right).count();
         let is_wrong = find_first_difference(&expected, &actual, &ROUND_OFF).is_some();
-        let before = kept.before.clone();
-        Some(Self { is_wrong, before, expected, actual, right_polynomials, hits, passes, detections })
+        let (before, Events { hits, passes, zones, detections, .. }) = (kept.before.clone(), events);
+        Some(Self {
+            is_wrong,
+            before,
+            prediction,
+            expected,
+            actual,
+            right_polynomials,
+            hits,
+            passes,
+            zones,
+            detections,
+        })
     }
 
     /// Returns whether contacts are resolved immediately, in the single pass of `continuous-time`.
@@ -154,13 +207,14 @@ impl StepFacts {
     }
 
     /// Returns whether a logged pass (from 0) describes the motion from the start of the step to the positions `end`.
-    pub(super) fn fits_motion(&self, scene: &Scene, pass: usize, end: &[f64]) -> bool {
+    /// Only the pairs that `selects` accepts are compared.
+    pub(super) fn fits_motion(&self, scene: &Scene, pass: usize, end: &[f64], selects: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
             return false;
         }
-        let mut pass_detections = self.detections.iter().take_while(|(_, first)| *first < size);
-        pass_detections.all(|(pair, first)| {
+        let pass_detections = self.detections.iter().take_while(|(_, first)| *first < size);
+        pass_detections.filter(|(pair, _)| selects(*pair)).all(|(pair, first)| {
             let expected = BoundedPairMotion::for_pair(scene, *pair, &self.before.positions, end).polynomials();
             (0..expected.count()).all(|number| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];

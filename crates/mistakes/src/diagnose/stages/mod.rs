@@ -2,15 +2,19 @@
 //!
 //! In a trace the results of a stage follow from those of the previous stage: polynomials from the state, contacts from
 //! the polynomials, the state in the middle from the contacts, zones from that state. Therefore the stage to check is
-//! the first one whose results are wrong although everything before is right. The results are observations, not
-//! guesses. No stage is reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
+//! the first one whose results are wrong although everything before is right. The features that its wrong results have
+//! in common (a factor, a kind of pair, a body) show the place. The results are observations, not guesses. No stage is
+//! reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
 mod contacts;
 mod events;
+mod responses;
+mod rigid;
 mod rounds;
 mod states;
+mod zones;
 
 use super::{
-    Detail, Explanation, StageDetail,
+    Detail, Explanation, Ratios, StageDetail,
     fault::StageFault,
     sampling::{KeptStep, Reference},
     topic::ExplanationTopic,
@@ -56,9 +60,11 @@ pub(super) fn explain<'a>(
     if facts.iter().any(|facts| facts.has_wrong_formula()) {
         return None;
     }
+    let responses = responses::Responses::new(scene, &facts);
     contacts::explain_detection(&facts)
-        .or_else(|| rounds::explain_responses(&facts))
-        .or_else(|| rounds::explain(scene, &facts))
+        .or_else(|| responses.explain(&facts))
+        .or_else(|| rounds::explain(scene, &facts, &responses))
+        .or_else(|| rigid::explain(scene, &facts))
 }
 
 /// Returns an observation, which reproduces nothing.
@@ -77,4 +83,14 @@ fn common_value(values: &[f64]) -> Option<f64> {
     let middle = *sorted.get(sorted.len() / 2)?;
     let is_alike = |value: &f64| (value - middle).abs() <= RATIO_TOLERANCE * (1.0 + middle.abs());
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
+}
+
+/// Returns the ratio that all values share, or otherwise the range of the ratios.
+fn ratios(values: &[f64]) -> Ratios {
+    let (low, high) = range(values.iter().copied());
+    common_value(values).map_or(Ratios::Between(low, high), Ratios::All)
+}
+
+fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)))
 }

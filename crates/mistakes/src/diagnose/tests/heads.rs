@@ -3,7 +3,8 @@ use crate::{
     diagnose::is_named_in,
     diagnose::{
         Detail, Explanation, ExplanationTopic, Guess, ListGuess, NanStage, NonFiniteValue, PolynomialEvidence,
-        QuantityGuess, StageFault, WrongVectors, correct_trace, explain_together, mistake_is_visible, refuted_keys,
+        QuantityGuess, StageFault, WrongMotion, WrongVectors, correct_trace, explain_together, mistake_is_visible,
+        refuted_keys,
     },
 };
 use fosssim_model::{assignments::Assignment, scene::Scene, sim::PairKind};
@@ -39,7 +40,12 @@ fn row(id: &str, claims: &[&str]) -> Explanation {
 }
 
 fn stage(fault: StageFault) -> Explanation {
-    statement(fault.key(), ExplanationTopic::Stage(fault), (0, 3), &[])
+    statement(
+        if matches!(fault, StageFault::Motion { .. }) { "stage-failsafe" } else { "stage-contact-vectors" },
+        ExplanationTopic::Stage(fault),
+        (0, 3),
+        &[],
+    )
 }
 
 /// Returns the statements of all explanations, each with the number of traces that agree.
@@ -101,12 +107,12 @@ fn a_named_mistake_is_tried_on_all_traces_before_a_second_one() {
 #[test]
 fn a_stage_may_be_the_second_mistake() {
     let first = row("pp-no-two", &["ParticleOverlap/pp-no-two/"]);
-    let rounds = stage(StageFault::HandedOver);
+    let motion = stage(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: false });
     let mut traces = vec![vec![first.clone()]; 3];
-    traces.extend(vec![vec![rounds.clone()]; 2]);
-    assert_eq!(heads(&traces), words(&[(&first, 3), (&rounds, 2)]));
+    traces.extend(vec![vec![motion.clone()]; 2]);
+    assert_eq!(heads(&traces), words(&[(&first, 3), (&motion, 2)]));
     // In traces that the first one explains, it follows.
-    assert_eq!(heads(&vec![vec![first.clone(), rounds]; 4]), words(&[(&first, 4)]));
+    assert_eq!(heads(&vec![vec![first.clone(), motion]; 4]), words(&[(&first, 4)]));
 }
 
 #[test]
@@ -164,7 +170,7 @@ fn traces_of_the_same_stage_contradict_a_mistake() {
     let (_, scene) = scenes.iter().find(is_visible).expect("a scene with zones");
     let named = [row("zones-all-in-one", &[])];
     let fault = |fault| vec![stage(fault)];
-    let of_zones = fault(StageFault::AfterRounds);
+    let of_zones = fault(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: true });
     let refuted = |named_in: usize, other: &[Explanation]| {
         let wrong: Vec<(&Scene, &[Explanation])> =
             std::iter::repeat_n((scene, &named[..]), named_in).chain([(scene, other)]).collect();
@@ -212,9 +218,9 @@ fn a_second_mistake_is_not_reported_twice() {
 #[test]
 fn a_stage_of_one_trace_is_no_second_mistake() {
     let first = letter(Subject::EdgeOverlap, "a");
-    let rounds = stage(StageFault::HandedOver);
+    let motion = stage(StageFault::Motion { wrong: vec![WrongMotion::Turn], or_zones: false });
     let mut traces = vec![vec![first.clone()]; 5];
-    traces.push(vec![rounds]);
+    traces.push(vec![motion]);
     assert_eq!(heads(&traces), words(&[(&first, 5)]));
 }
 

@@ -70,7 +70,7 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
             Detail::SearchArea(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
-            Detail::Stage(detail) => Some(stages::describe_detail(detail)),
+            Detail::Stage(detail) => stages::describe_detail(detail),
         };
         lines.extend(line);
     }

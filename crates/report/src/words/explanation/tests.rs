@@ -1,9 +1,10 @@
 //! Tests all sentences of explanations.
 use super::*;
 use fosssim_mistakes::diagnose::{
-    ChangeCause, ChangeRatio, ChangedParticles, CoefficientGuess, Guess, ListGuess, NanStage, NonFiniteValue,
-    PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, StageDetail, StageFault, Substitute, Weight,
-    WrongChange, WrongDecisions, WrongGeometric, WrongNumber, WrongVectors,
+    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
+    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail,
+    StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{
@@ -13,6 +14,7 @@ use fosssim_student::{
 use std::borrow::Cow;
 
 const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);
+const TWO: Ratios = Ratios::All(2.0);
 const OVERLAP: Reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
 
 fn explanation(key: &str, about: ExplanationTopic, details: Vec<Detail>) -> Explanation {
@@ -63,14 +65,22 @@ fn changes() -> [WrongChange; 4] {
 
 /// Returns all faults that a stage can have.
 fn faults() -> Vec<StageFault> {
+    let changed = |body, quantity| ChangedQuantity { kind: PairKind::ParticleEdge, body, quantity };
+    let position = vec![changed(0, Quantity::Position)];
+    let both = vec![changed(1, Quantity::Position), changed(1, Quantity::Velocity)];
+    let velocities = vec![changed(1, Quantity::Velocity), changed(2, Quantity::Velocity)];
+    let all = [position.clone(), both.clone(), velocities.clone()].concat();
     let mut faults = vec![
         StageFault::Order,
         StageFault::ContactTimes,
-        StageFault::Responses,
-        StageFault::HandedOver,
+        StageFault::ManyContacts,
+        StageFault::Unresolved { all: true },
+        StageFault::Unresolved { all: false },
         StageFault::FirstRound,
         StageFault::LaterRounds,
         StageFault::AfterRounds,
+        StageFault::RoundsOfPrediction,
+        StageFault::BehindFirstRound,
         StageFault::Geometric(WrongGeometric::Left { always: true }),
         StageFault::Geometric(WrongGeometric::Left { always: false }),
         StageFault::Geometric(WrongGeometric::Superfluous),
@@ -79,9 +89,39 @@ fn faults() -> Vec<StageFault> {
         faults.extend(WrongDecisions::ALL.map(|wrong| StageFault::Decisions { kind, wrong }));
         faults.extend(WrongDecisions::ALL.map(|wrong| StageFault::Overlaps { kind, wrong }));
         faults.extend(WrongVectors::ALL.map(|wrong| StageFault::ContactVectors { kind, wrong }));
+        let responses = [
+            WrongResponses::Nothing,
+            WrongResponses::Unchanged(all.clone()),
+            WrongResponses::Across(position.clone()),
+            WrongResponses::Across(both.clone()),
+            WrongResponses::Amount(velocities.clone()),
+            WrongResponses::Amount(all.clone()),
+        ];
+        for in_rounds in [false, true] {
+            let all = responses.clone().into_iter();
+            faults.extend(all.map(|wrong| StageFault::Responses { kind, wrong, in_rounds }));
+        }
     }
     faults.extend(changes().map(StageFault::Change));
+    faults.extend(WrongPositions::ALL.map(StageFault::ZonePositions));
     faults.extend(WrongNumber::ALL.map(StageFault::Rounds));
+    for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
+        let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
+        faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when, or_response: false }));
+        faults.push(StageFault::HandedOver { quantity: None, when, or_response: true });
+    }
+    faults.extend(WrongZoneRounds::ALL.map(StageFault::ZoneRounds));
+    faults.extend(WrongZones::ALL.map(StageFault::Zones));
+    let motions = [
+        vec![],
+        vec![WrongMotion::Center, WrongMotion::Distances, WrongMotion::Velocities],
+        vec![WrongMotion::NoTurn, WrongMotion::Speeds],
+        vec![WrongMotion::LessTurn],
+        vec![WrongMotion::MoreTurn],
+        vec![WrongMotion::TurnBack],
+        vec![WrongMotion::Turn],
+    ];
+    faults.extend(motions.map(|wrong| StageFault::Motion { or_zones: wrong.len() > 2, wrong }));
     faults
 }
 
@@ -169,8 +209,29 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::Weight(weight(&["b", "b"], 2)),
         PolynomialDetail::Alternative(vec![weight(&["e", "h"], 2), weight(&["R"], 1)]),
     ];
-    let stages =
-        [StageDetail::Order, StageDetail::Factor(2.0), StageDetail::Passes { expected: 4, actual: 2, most: 10 }];
+    let changed = ChangedQuantity { kind: PairKind::ParticleEdge, body: 2, quantity: Quantity::Velocity };
+    let change = |amount, across| StageDetail::Change { changed, amount, across, wrong: 3, of: 4 };
+    let stages = [
+        StageDetail::Order,
+        StageDetail::Impacts { right: false, count: 3, low: 0.25, high: 0.75 },
+        StageDetail::Impacts { right: true, count: 5, low: 0.125, high: 1.0 },
+        StageDetail::Vectors(Ratios::Between(-1.0, 0.33333)),
+        StageDetail::VectorError(3.4e-8),
+        StageDetail::ZoneCount { count: 1, of: 3 },
+        StageDetail::Vectors(Ratios::All(1.0 + 1e-6)),
+        StageDetail::Times(TWO),
+        StageDetail::TimeError(0.1),
+        StageDetail::TimeUse,
+        StageDetail::Passes { expected: 4, actual: 2, most: 10 },
+        change(Amount::Unwanted, false),
+        change(Amount::Right, true),
+        change(Amount::Ratio(TWO), false),
+        StageDetail::StoppedVelocities(TWO),
+        StageDetail::CenterMotion(TWO),
+        StageDetail::CenterDirection,
+        StageDetail::Rotations(Ratios::Between(0.5, 0.75)),
+        StageDetail::Velocities(TWO),
+    ];
     let polynomials = polynomials.map(Detail::Polynomial).into_iter();
     let others = [Detail::Letters(vec![PairKind::ParticleEdge])];
     polynomials.chain(others).chain(stages.map(Detail::Stage)).collect()
@@ -229,5 +290,5 @@ fn advice_on_a_step_fits_its_mistake() {
 #[test]
 fn a_huge_ratio_has_six_digits() {
     let detail = stages::describe_detail(&StageDetail::Factor(1_267_650_600_228_229_401_496_703_205_376.0));
-    assert_eq!(detail, "each change is 1.26765e+30 times what it should be");
+    assert_eq!(detail.as_deref(), Some("each change is 1.26765e+30 times what it should be"));
 }
