@@ -167,7 +167,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   const invitation = await page.locator("[role=status] code").innerText();
   // Members are counted, and shown by their role.
   await page.getByText("2 students, 0 staff").waitFor();
-  await page.getByLabel("Who").selectOption("staff");
+  await page.getByLabel("Show").selectOption("staff");
   await page.getByRole("button", { name: "Show", exact: true }).click();
   await page.getByText("No member matches the filter.").waitFor();
   await checkAccessibility(page);
@@ -179,7 +179,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.page.getByRole("link", { name: "Milestone one", exact: true }).click();
   await checkAccessibility(student.page);
   await student.page.locator("#file").setInputFiles(join(folder, "upload/fosssim-sample.pp-contact-reversed"));
-  await student.page.getByRole("button", { name: "Hand in" }).click();
+  await student.page.getByRole("button", { name: "Submit" }).click();
   // The page updates itself. From here on, nothing is clicked or loaded again.
   await student.page.locator(".report").waitFor();
   assert.equal(await student.page.locator("#result").innerText(), "wrong answer");
@@ -198,7 +198,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.page.goto(`${address}/c/physics`);
   assert.match(
     await student.page.getByRole("row", { name: /Milestone one/ }).innerText(),
-    /wrong answer\s+Hand in\s+: Milestone one\s+0 of 10\s+1\s+never/,
+    /wrong answer\s+Submit\s+: Milestone one\s+0 of 10\s+1\s+never/,
   );
   await checkAccessibility(student.page);
   const own = ["/c/physics", "/c/physics/a/m1", "/c/physics/s/1", "/account"];
@@ -208,9 +208,9 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await student.page
     .locator("#file")
     .setInputFiles({ name: "a.txt", mimeType: "text/plain", buffer: Buffer.from("?") });
-  await student.page.getByRole("button", { name: "Hand in" }).click();
+  await student.page.getByRole("button", { name: "Submit" }).click();
   await student.page.getByText(/expected a program for Linux/).waitFor();
-  assert.ok(await student.page.getByRole("button", { name: "Hand in" }).isEnabled());
+  assert.ok(await student.page.getByRole("button", { name: "Submit" }).isEnabled());
   student.complaints.splice(0);
 
   // The essentials work without JavaScript.
@@ -221,7 +221,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
 
   // The home page lists open assignments and their state.
   await student.page.goto(address);
-  await student.page.getByRole("link", { name: /Hand in.*Milestone one/ }).waitFor();
+  await student.page.getByRole("link", { name: /Submit.*Milestone one/ }).waitFor();
   await checkAccessibility(student.page);
 
   // The teacher sees the class, and the changes of a regrade before they are applied.
@@ -236,7 +236,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   assert.match(await page.locator("td.heat svg").getAttribute("aria-label"), /^0 of \d+ scenes accepted$/);
   await checkAccessibility(page);
   // The class can be filtered, and two submissions can be compared.
-  await page.getByLabel("Who").selectOption({ label: "nothing handed in (1)" });
+  await page.getByLabel("Show").selectOption({ label: "no submission (1)" });
   await page.getByRole("button", { name: "Show", exact: true }).click();
   await page.getByRole("rowheader", { name: "Eve" }).waitFor();
   assert.equal(await page.getByRole("link", { name: "ada, submission 1" }).count(), 0);
@@ -349,7 +349,7 @@ test(
       await page.getByRole("link", { name: "Example" }).click();
       await page.getByRole("link", { name: "Theme 2, Milestone 2", exact: false }).first().click();
       await page.locator("#file").setInputFiles(flawed);
-      await page.getByRole("button", { name: "Hand in" }).click();
+      await page.getByRole("button", { name: "Submit" }).click();
       await page.locator(".report").waitFor();
       assert.equal(await page.locator("#result").innerText(), "wrong answer");
       await page.locator("html[data-ready]").waitFor({ state: "attached" });

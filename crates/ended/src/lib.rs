@@ -183,7 +183,7 @@ pub enum StartProblem {
     )]
     Sanitized,
     /// The file is the grader's own program.
-    #[error("this is the grader's own program, not a submission; hand in the program that you wrote")]
+    #[error("this is the grader's own program, not a submission; submit the program that you wrote")]
     GradersOwn,
     /// Another process has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]

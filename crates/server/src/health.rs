@@ -27,7 +27,7 @@ pub fn recency_millis(policy: &QueuePolicy) -> i64 {
 pub async fn record_report(
     transaction: &mut Transaction,
     (worker, version): (&str, &str),
-    token: Option<i64>,
+    token_id: Option<i64>,
     slots: usize,
     fault: Option<&str>,
 ) -> Result<(), DbError> {
@@ -37,7 +37,7 @@ pub async fn record_report(
         "INSERT INTO worker (name, version, slots, started_at, seen_at, token) VALUES (?, ?, ?, {now}, {now}, ?)
         ON CONFLICT (name) DO UPDATE SET version = excluded.version, slots = excluded.slots,
            seen_at = excluded.seen_at";
-    transaction.execute(statement, values![worker, version, slots, token]).await?;
+    transaction.execute(statement, values![worker, version, slots, token_id]).await?;
     if let Some(fault) = &fault {
         let statement = "UPDATE worker SET fault = ?, fault_at = {now}, aside_since = coalesce(aside_since, {now}),
             faults = faults + CASE WHEN aside_since IS NULL THEN 1 ELSE 0 END WHERE name = ?";
@@ -61,13 +61,13 @@ pub async fn may_claim(
     claimant: Claimant<'_>,
 ) -> Result<bool, DbError> {
     let recent = recency_millis(policy);
-    if let Some(token) = claimant.token {
+    if let Some(token_id) = claimant.token_id {
         // Requests of one token are handled one after another, so that the number of its jobs is exact.
-        transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token]).await?;
+        transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token_id]).await?;
         let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
                (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
             FROM worker WHERE token = ? AND seen_at > {now} - ?";
-        let room = transaction.one(statement, values![token, token, recent]).await?;
+        let room = transaction.one(statement, values![token_id, token_id, recent]).await?;
         if room.int("held")? >= room.int("slots")?.max(1) {
             return Ok(false);
         }

@@ -83,7 +83,7 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
 struct JobDetails {
     job: i64,
     submission: Option<i64>,
-    campaign: Option<i64>,
+    regrade_id: Option<i64>,
     assignment: Option<i64>,
     course: Option<i64>,
     worker: String,
@@ -105,7 +105,7 @@ async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobDetails,
     let row = &transaction.one(statement, values![job]).await?;
     let seconds = row.int("took")? / 1000;
     Ok(read_row!(row => JobDetails {
-        submission, campaign, assignment, course, worker, asked_by, task = "payload"; job, seconds
+        submission, regrade_id = "campaign", assignment, course, worker, asked_by, task = "payload"; job, seconds
     }))
 }
 
@@ -155,19 +155,19 @@ async fn write_result(
 ) -> Result<JobDetails, DbError> {
     let about = find_job(transaction, job).await?;
     // Only grading jobs have a result.
-    let Some(submission) = about.submission else { return Ok(about) };
+    let Some(submission_id) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
         "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
            version, task, seconds, grader, shown, failed, parts, created_at)
         VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
-    let result = transaction
+    let result_id = transaction
         .one(
             statement,
             values![
                 job,
-                submission,
-                about.campaign,
+                submission_id,
+                about.regrade_id,
                 attempt,
                 &about.worker,
                 &outcome.verdict,
@@ -190,14 +190,14 @@ async fn write_result(
         let size = i64::try_from(file.artifact.size).unwrap_or(i64::MAX);
         let statement = "INSERT INTO result_file (result, name, media_type, digest, size) VALUES (?, ?, ?, ?, ?)";
         transaction
-            .execute(statement, values![result, &file.name, &file.media_type, file.artifact.digest.as_str(), size])
+            .execute(statement, values![result_id, &file.name, &file.media_type, file.artifact.digest.as_str(), size])
             .await?;
     }
-    let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
+    let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission_id]).await?;
     // A failure of the grader does not replace a grade.
-    if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
+    if about.regrade_id.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let reason = if counted.is_some() { "graded again" } else { "graded" };
-        let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
+        let change = GradeChange { submission_id, result_id, changed_by: about.asked_by, regrade_id: None, reason };
         set_grade(transaction, &change).await?;
     }
     // Judge errors are recorded when their jobs are given up.
@@ -205,12 +205,12 @@ async fn write_result(
         return Ok(about);
     }
     let text = match (&outcome.points, &outcome.max_points) {
-        (Some(points), Some(most)) => {
-            format!("{}: {} of {} points", outcome.verdict, round_points(points), round_points(most))
+        (Some(points), Some(max_points)) => {
+            format!("{}: {} of {} points", outcome.verdict, round_points(points), round_points(max_points))
         }
         _ => outcome.verdict.clone(),
     };
-    match about.campaign {
+    match about.regrade_id {
         None => log_event(transaction, &about, "graded", &text).await?,
         Some(_) => log_event(transaction, &about, "regraded", &format!("{text}, if the regrade is applied")).await?,
     }
@@ -220,14 +220,14 @@ async fn write_result(
 /// A change of the result that counts for a submission, with its reason.
 #[derive(Debug, Clone, Copy)]
 pub struct GradeChange<'a> {
-    /// The number of the submission whose grade changes.
-    pub submission: i64,
-    /// The number of the result that counts from now on.
-    pub result: i64,
-    /// The person who requested the change; `None` for the first grading.
-    pub by: Option<i64>,
-    /// The regrade that caused the change.
-    pub campaign: Option<i64>,
+    /// The ID of the submission whose grade changes.
+    pub submission_id: i64,
+    /// The ID of the result that counts from now on.
+    pub result_id: i64,
+    /// The ID of the account that requested the change; `None` for the first grading.
+    pub changed_by: Option<i64>,
+    /// The ID of the regrade that caused the change, if any.
+    pub regrade_id: Option<i64>,
     /// The reason for the change, as students read it.
     pub reason: &'a str,
 }
@@ -238,17 +238,16 @@ pub struct GradeChange<'a> {
 ///
 /// Fails if the database cannot be changed.
 pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
+    let GradeChange { submission_id, result_id, changed_by, regrade_id, reason } = *change;
     let statement = "SELECT result FROM grade WHERE submission = ? {for update}";
-    let old = transaction.row(statement, values![change.submission]).await?;
+    let old = transaction.row(statement, values![submission_id]).await?;
     let old = old.map(|row| row.int("result")).transpose()?;
     let statement = "INSERT INTO grade (submission, result, set_at) VALUES (?, ?, {now})
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
-    transaction.execute(statement, values![change.submission, change.result]).await?;
+    transaction.execute(statement, values![submission_id, result_id]).await?;
     let statement =
         "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
         VALUES (?, ?, ?, ?, ?, ?, {now})";
-    transaction
-        .execute(statement, values![change.submission, old, change.result, change.by, change.campaign, change.reason])
-        .await?;
-    score::queue_changed_scores(transaction, change.submission).await
+    transaction.execute(statement, values![submission_id, old, result_id, changed_by, regrade_id, reason]).await?;
+    score::queue_changed_scores(transaction, submission_id).await
 }

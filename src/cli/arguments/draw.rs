@@ -66,7 +66,8 @@ pub(in crate::cli) enum DetectFormat {
     Text,
     /// One JSON object.
     Json,
-    /// A picture like the assignment's figure 2: the polynomials, where each is positive, and where all are.
+    /// A plot as in figure 2 of the assignment: the polynomials, and the intervals in which one or all of them are
+    /// positive.
     Svg,
 }
 

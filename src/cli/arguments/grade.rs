@@ -254,14 +254,14 @@ Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
 pub(in crate::cli) struct DemoArguments {
-    /// The mistake of the wrong sample, or several mistakes separated by commas; `fosssim-oracle sample --list` lists
-    /// them.
+    /// The mistake of the sample program, or several mistakes separated by commas; `fosssim-oracle sample --list`
+    /// lists them.
     #[arg(long, value_name = "ID")]
     pub(in crate::cli) mistake: Option<String>,
-    /// The file for the HTML report on the wrong sample.
+    /// The file for the HTML report on the sample program.
     #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
     pub(in crate::cli) output: PathBuf,
-    /// Run nothing; write the wrong sample as a separate program, to grade or submit it.
+    /// Only write the sample program with the mistake to FILE; nothing is graded.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) program: Option<PathBuf>,
 }

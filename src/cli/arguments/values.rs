@@ -79,6 +79,6 @@ pub(in crate::cli) fn assignment_parser() -> impl TypedValueParser<Value = Assig
 pub(in crate::cli) fn audience_parser() -> impl TypedValueParser<Value = Audience> {
     word_parser(&[
         ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
-        ("student", Audience::Student, "The student: the visible groups, as far as the suite's hints allow"),
+        ("student", Audience::Student, "The student: the visible groups, as the suite's hints allow"),
     ])
 }

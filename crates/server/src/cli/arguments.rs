@@ -256,7 +256,7 @@ pub(super) struct WorkerArguments {
     /// The file with the worker's token, which an administrator creates on the page "Administration".
     #[arg(long, value_name = "FILE")]
     pub(super) token_file: Option<PathBuf>,
-    /// The name of this worker; by default the host and the process number.
+    /// The name of this worker; by default the host and the process ID.
     #[arg(long)]
     pub(super) name: Option<String>,
 }

@@ -79,7 +79,7 @@ async fn run_http(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     Ok(())
 }
 
-/// Makes a worker's name unique, by adding the process number.
+/// Makes a worker's name unique, by adding the process ID.
 fn unique_name(name: Option<&str>) -> String {
     let name = strip_controls(name.map_or_else(host_name, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])

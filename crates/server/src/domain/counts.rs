@@ -35,7 +35,7 @@ impl Counts {
 async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
     let mut transaction = database.read().await?;
     let mut metrics = Metrics::default();
-    // Submission numbers are assigned only once, even if rows are removed, so the highest number
+    // Submission IDs are assigned only once, even if rows are removed, so the highest ID
     // counts all submissions so far.
     let statement = "SELECT (SELECT coalesce(max(id), 0) FROM submission) AS submissions,
         (SELECT coalesce(max(id), 0) FROM result) AS results";

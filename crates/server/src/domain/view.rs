@@ -17,7 +17,7 @@ use utoipa::{IntoParams, ToSchema};
 /// The account of a person who can sign in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Account {
-    /// The account's number in the database.
+    /// The account's ID.
     #[serde(skip)]
     pub(crate) id: i64,
     /// The login: the account's name in addresses and tables.
@@ -61,7 +61,7 @@ pub struct Assignment {
 /// A submission, and its result if there is one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
-    /// The submission's number on this server.
+    /// The submission's ID.
     pub id: i64,
     /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
@@ -91,8 +91,8 @@ pub struct Submission {
     /// The number of jobs ahead in the queue, while the submission waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
-    /// The expected number of seconds until the grade is there, while the submission waits and workers are connected,
-    /// and while it is graded.
+    /// The expected number of seconds until the grade is ready. Present while the submission is graded, or while it
+    /// waits and a worker is connected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
     /// Whether the submission waits although no worker is connected that could grade it.
@@ -184,7 +184,7 @@ pub struct History {
     pub new_code: String,
     /// The points after the change.
     pub new_points: Option<String>,
-    /// The number of the result that counts after the change.
+    /// The ID of the result that counts after the change.
     pub result: i64,
     /// The grader's version.
     pub version: String,
@@ -200,7 +200,7 @@ pub struct History {
 /// An entry of the audit log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Event {
-    /// The event's number; later events have larger numbers.
+    /// The event's ID; later events have larger IDs.
     pub id: i64,
     /// The time of the event, in milliseconds since 1970.
     pub happened_at: i64,
@@ -212,9 +212,9 @@ pub struct Event {
     pub course: Option<String>,
     /// The short name of the event's assignment.
     pub assignment: Option<String>,
-    /// The number of the event's submission on this server.
+    /// The ID of the event's submission.
     pub submission: Option<i64>,
-    /// The submission's number among its owner's submissions to the assignment.
+    /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: Option<i64>,
     /// The login of the submission's owner.
     pub owner: Option<String>,
@@ -227,7 +227,7 @@ pub struct Event {
 #[serde(default)]
 #[into_params(parameter_in = Query)]
 pub struct EventQuery {
-    /// Only events with a number below this one.
+    /// Only events with an ID below this one.
     pub(crate) before: Option<u64>,
     /// Only events with these words in the text, in the login of the person who caused them, or in the owner's login.
     pub(crate) who: String,
@@ -401,7 +401,7 @@ pub(super) async fn submissions_of(
 /// The number of submissions that one statement reads.
 const PAGE_SIZE: i64 = 500;
 
-/// Returns a page of the submissions to an assignment, oldest first, from the first one after the number `after`. The
+/// Returns a page of the submissions to an assignment, oldest first, from the first one after the ID `after`. The
 /// page after the last submission is empty.
 pub(super) async fn submissions_after(
     transaction: &mut Transaction,

@@ -170,18 +170,19 @@ impl Client {
         scope: &str,
         request: &ServiceRequest,
     ) -> Result<ServiceAnswer, ServiceFault> {
-        let token = self.token(database, platform, scope).await?;
+        let token = self.fetch_token(database, platform, scope).await?;
         let answer = self.send(platform, request, Some(&token)).await?;
         if answer.status != 401 {
             return answer.ensure_success();
         }
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&(platform.id, scope.to_owned()));
-        let token = self.token(database, platform, scope).await?;
+        let token = self.fetch_token(database, platform, scope).await?;
         self.send(platform, request, Some(&token)).await?.ensure_success()
     }
 
-    /// Returns a token for a scope. To get one, this service sends an assertion that it signed (SEC 4.1, RFC 7523).
-    async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
+    /// Returns a token for a scope, from the cache if it is still valid. To get a new one, this service sends an
+    /// assertion that it signed (SEC 4.1, RFC 7523).
+    async fn fetch_token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
         let key = (platform.id, scope.to_owned());
         if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)
             && *ends > Instant::now()

@@ -39,7 +39,7 @@ pub enum Rejection {
     /// The message answers another request; the value names the part that differs.
     #[error("the message is not for this sign-in: {0} differs")]
     Foreign(&'static str),
-    /// The message comes from the deployment of this name, which is not registered.
+    /// The message comes from a deployment that is not registered; the value is its ID.
     #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
     /// A part of the message is missing or invalid; the value describes it.
@@ -82,16 +82,16 @@ pub struct LtiPerson {
 /// A platform's message about a person who opens a link.
 #[derive(Debug, Clone)]
 pub struct Message {
-    /// The person who comes to this service.
+    /// The person who signs in.
     pub person: LtiPerson,
-    /// The course and the link from which the person comes.
+    /// The course and the link on the platform where the person started.
     pub arrival: Arrival,
 }
 
-/// The course and the link on a platform from which a person comes.
+/// The course and the link on a platform where a person started a sign-in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Arrival {
-    /// The number of this service's deployment on the platform.
+    /// The LTI deployment ID (`deployment_id`).
     pub deployment: String,
     /// The course on the platform.
     pub context: Context,

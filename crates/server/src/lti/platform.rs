@@ -33,7 +33,7 @@ pub struct PlatformSettings {
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
     /// The deployments from which people may come. If a sign-in from a new deployment is rejected, the page shows the
-    /// deployment's number.
+    /// deployment's ID.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
     /// Hosts of the platform's services, in addition to the hosts of the other addresses.
@@ -45,7 +45,7 @@ pub struct PlatformSettings {
 /// A registered platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Platform {
-    /// The platform's number in the database.
+    /// The platform's ID in the database.
     #[serde(skip)]
     pub(crate) id: i64,
     /// The platform's name on this server.

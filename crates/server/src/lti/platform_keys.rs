@@ -17,7 +17,7 @@ const STALE_LIFETIME: Duration = Duration::from_secs(24 * 3600);
 /// The minimum pause between two requests for unknown keys, because strangers can name any key.
 const MIN_PAUSE: Duration = Duration::from_secs(5);
 
-/// The keys of each platform, by the platform's number.
+/// The keys of each platform, by the platform's ID.
 #[derive(Debug, Default)]
 pub(super) struct PlatformKeys(Mutex<HashMap<i64, KnownKeys>>);
 

@@ -19,9 +19,9 @@ use serde_json::{Value, json};
 /// The task of a job that sends a score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct ScoreOrder {
-    /// The number of the platform's link in the database.
+    /// The ID of the platform's link in the database.
     pub(super) link: i64,
-    /// The number of the student's account.
+    /// The ID of the student's account.
     pub(super) account: i64,
     /// Whether the score is sent even if the platform already has it.
     #[serde(default)]
@@ -54,9 +54,9 @@ pub(crate) async fn queue_changed_scores(transaction: &mut Transaction, submissi
 }
 
 /// Enqueues the scores of all submissions in a regrade, because the regrade's results count from now on.
-pub(crate) async fn queue_regraded_scores(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+pub(crate) async fn queue_regraded_scores(transaction: &mut Transaction, regrade_id: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
-    let rows = transaction.rows(statement, values![campaign]).await?;
+    let rows = transaction.rows(statement, values![regrade_id]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
@@ -82,7 +82,7 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
             continue;
         }
         let payload = &serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
-        let job = NewJob { lane: Lane::Passback, submission: None, campaign: None, turn, payload };
+        let job = NewJob { lane: Lane::Passback, submission: None, regrade_id: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
     }
     Ok(rows.len())

@@ -43,7 +43,7 @@ const MAX_POLLS: u32 = 100;
 const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
 /// The name under which the server claims the jobs that send scores.
-const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
+const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token_id: None };
 
 /// Sends scores until `stop` is canceled. If recording a sent score fails, it is sent again, which changes nothing.
 /// Before each claim, `tick` is called, so that jobs of servers that stopped responding are found.

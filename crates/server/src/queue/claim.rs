@@ -10,8 +10,8 @@ use crate::{
 pub struct Claimant<'a> {
     /// The worker's name.
     pub worker: &'a str,
-    /// The number of the token with which the worker signed in; `None` for the server's own workers.
-    pub token: Option<i64>,
+    /// The ID of the token with which the worker signed in; `None` for the server's own workers.
+    pub token_id: Option<i64>,
 }
 
 /// Claims the next job; `None` if there is no job. If this worker was the last one that failed on a job, the job is
@@ -27,7 +27,7 @@ pub async fn claim(
     lane: Lane,
     claimant: Claimant<'_>,
 ) -> Result<Option<Claim>, DbError> {
-    let Claimant { worker, token } = claimant;
+    let Claimant { worker, token_id } = claimant;
     let statement = "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
             AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?)
         ORDER BY rank, id LIMIT 1 {skip locked}";
@@ -38,7 +38,7 @@ pub async fn claim(
     let statement = "UPDATE job SET state = 'running', attempt = attempt + 1, worker = ?, lease_key = ?,
            lease_until = {now} + ?, started_at = {now}, scenes_done = NULL, scenes = NULL, token = ?
         WHERE id = ? RETURNING attempt, failures, deaths, submission, payload";
-    let row = transaction.one(statement, values![worker, &key, millis(policy.lease), token, job]).await?;
+    let row = transaction.one(statement, values![worker, &key, millis(policy.lease), token_id, job]).await?;
     let lease = Lease { job, attempt: row.int("attempt")?, key };
     let row = &row;
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))

@@ -15,11 +15,11 @@ use crate::{
 /// The owner of a job. Owners take turns, so that no owner's jobs delay all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn {
-    /// A student who uploaded a submission; the value is the account's number.
+    /// A student who uploaded a submission; the value is the account's ID.
     Student(i64),
-    /// A regrade; the value is its number.
-    Campaign(i64),
-    /// A score that a platform receives; the values are the numbers of the link and of the account.
+    /// A regrade; the value is its ID.
+    Regrade(i64),
+    /// A score that a platform receives; the values are the IDs of the link and of the account.
     Score(i64, i64),
 }
 
@@ -28,7 +28,7 @@ impl Turn {
     pub(crate) fn spacing_millis(self) -> i64 {
         match self {
             Self::Student(_) => 600_000,
-            Self::Campaign(_) => 20_000,
+            Self::Regrade(_) => 20_000,
             Self::Score(..) => 0,
         }
     }
@@ -37,13 +37,13 @@ impl Turn {
     fn delay_millis(self) -> i64 {
         match self {
             Self::Student(_) | Self::Score(..) => 0,
-            Self::Campaign(_) => 1_800_000,
+            Self::Regrade(_) => 1_800_000,
         }
     }
 
     /// Returns the rank of the owner's next job.
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        // Two simultaneous uploads of one student may get the same rank. Then the job with the smaller number is first.
+        // Two simultaneous uploads of one student may get the same rank. Then the job with the smaller ID is first.
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
@@ -54,7 +54,7 @@ impl Turn {
     pub(crate) fn key(self) -> String {
         match self {
             Self::Student(account) => format!("student {account}"),
-            Self::Campaign(campaign) => format!("campaign {campaign}"),
+            Self::Regrade(id) => format!("campaign {id}"),
             Self::Score(link, account) => format!("score {link} {account}"),
         }
     }
@@ -65,17 +65,17 @@ impl Turn {
 pub struct NewJob<'a> {
     /// The lane to which the job belongs.
     pub lane: Lane,
-    /// The submission that is graded; `None` for other kinds of jobs.
+    /// The ID of the submission that is graded; `None` for other kinds of jobs.
     pub submission: Option<i64>,
-    /// The regrade to which the job belongs, if any.
-    pub campaign: Option<i64>,
+    /// The ID of the regrade to which the job belongs, if any.
+    pub regrade_id: Option<i64>,
     /// The owner of the job, which determines its rank.
     pub turn: Turn,
     /// The task as text, in the form that the worker reads.
     pub payload: &'a str,
 }
 
-/// Enqueues a job within the caller's transaction and returns its number. Workers are notified by
+/// Enqueues a job within the caller's transaction and returns its ID. Workers are notified by
 /// [`super::Notifier::commit`].
 ///
 /// # Errors
@@ -87,7 +87,7 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
         VALUES (?, ?, ?, ?, ?, 'waiting', ?, {now}, {now}) RETURNING id";
     let row = transaction
-        .one(statement, values![job.lane.name(), job.submission, job.campaign, key, job.payload, rank])
+        .one(statement, values![job.lane.name(), job.submission, job.regrade_id, key, job.payload, rank])
         .await?;
     row.int("id")
 }

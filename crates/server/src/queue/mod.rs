@@ -119,7 +119,7 @@ impl QueuePolicy {
 /// A worker's right to a job, which the worker proves with the key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Lease {
-    /// The job's number.
+    /// The job's ID.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub job: i64,
     /// The number of the claim, from 1.
@@ -135,7 +135,7 @@ pub struct Lease {
 pub struct Claim {
     /// The lease, which the worker's further messages must contain.
     pub lease: Lease,
-    /// The number of the submission that is graded, if any.
+    /// The ID of the submission that is graded, if any.
     pub submission: Option<i64>,
     /// The task, as it was enqueued, as text.
     pub payload: String,

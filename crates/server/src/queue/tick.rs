@@ -27,7 +27,7 @@ pub struct Tick {
 /// A job that was given up, because its workers were lost too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuriedJob {
-    /// The job's number.
+    /// The job's ID.
     pub job: i64,
     /// The number of the job's last claim, from 1.
     pub attempt: i64,

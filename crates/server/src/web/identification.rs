@@ -110,8 +110,8 @@ roles! {
     RemoteWorker: |parts, app| {
         let token = read_secrets(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
-        let remote = app.remote(&token, name).await?;
+        let worker = app.authenticate_worker(&token, name).await?;
         parts.extensions.insert(SignedIn);
-        Ok(remote)
+        Ok(worker)
     };
 }

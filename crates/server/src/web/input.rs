@@ -42,14 +42,14 @@ pub(super) struct QueryInput<T>(pub(super) T);
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The number of the newest event of the audit log that the sender has seen. If the object of the request was
+    /// The ID of the newest event of the audit log that the sender has seen. If the object of the request was
     /// changed after that event, the request is rejected. Without this parameter, it is not checked.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
 
 impl SeenEvent {
-    /// Returns the event's number, in the type of the database.
+    /// Returns the event's ID, in the type of the database.
     pub(super) fn event(&self) -> Option<i64> {
         self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))
     }
@@ -59,7 +59,7 @@ impl SeenEvent {
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ListStart {
-    /// Only changes after the submission with this number, which is `next` in the previous answer.
+    /// Only changes after the submission with this ID, which is `next` in the previous answer.
     pub(super) after: Option<i64>,
 }
 

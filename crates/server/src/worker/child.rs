@@ -21,7 +21,7 @@ pub(super) enum End {
 /// A running child process. It is killed when this value is dropped.
 #[derive(Debug)]
 pub(super) struct Child {
-    /// The number of the process group, while it may be used. No other process can get this number before the leader is
+    /// The ID of the process group, while it may be used. No other process can get this ID before the leader is
     /// reaped.
     group: Arc<Mutex<Option<libc::pid_t>>>,
     end: watch::Receiver<Option<End>>,
@@ -79,7 +79,7 @@ impl Child {
             wait_without_reaping(number);
             let mut known = shared_group.lock().unwrap_or_else(PoisonError::into_inner);
             *known = None;
-            // SAFETY: the leader is not reaped yet, so the number still belongs to the group.
+            // SAFETY: the leader is not reaped yet, so the ID still belongs to the group.
             unsafe { libc::kill(-number, libc::SIGKILL) };
             let end = match child.wait() {
                 Ok(status) => match (status.code(), status.signal()) {
@@ -116,7 +116,7 @@ impl Child {
 
     fn signal(&self, signal: i32, whole_group: bool) {
         if let Some(number) = *self.group.lock().unwrap_or_else(PoisonError::into_inner) {
-            // SAFETY: the leader is not reaped as long as the number is known.
+            // SAFETY: the leader is not reaped as long as the ID is known.
             unsafe { libc::kill(if whole_group { -number } else { number }, signal) };
         }
     }
@@ -128,7 +128,7 @@ impl Drop for Child {
     }
 }
 
-/// Waits until a child has ended, but keeps its number in use. If the child was stopped, it is continued, because the
+/// Waits until a child has ended, but keeps its ID in use. If the child was stopped, it is continued, because the
 /// wait might never end otherwise.
 fn wait_without_reaping(number: libc::pid_t) {
     let wait = |options| {
@@ -144,7 +144,7 @@ fn wait_without_reaping(number: libc::pid_t) {
             (0, libc::CLD_STOPPED) => {
                 // Only a child that has ended remains to be reaped. After other events, wait again.
                 wait(libc::WSTOPPED | libc::WNOHANG);
-                // SAFETY: the child is not reaped yet, so the number still belongs to it.
+                // SAFETY: the child is not reaped yet, so the ID still belongs to it.
                 unsafe { libc::kill(number, libc::SIGCONT) };
             }
             (0, _) => return,

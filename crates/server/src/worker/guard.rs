@@ -5,7 +5,7 @@ use std::{
     sync::atomic::{AtomicI32, Ordering},
 };
 
-/// The grader's process number, for the guard's signal handler.
+/// The grader's process ID, for the guard's signal handler.
 static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 
 /// Forks. In the child, this function returns, and the child becomes the grader. This process becomes the grader's

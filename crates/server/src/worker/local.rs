@@ -30,15 +30,15 @@ pub struct LocalSource {
     worker: String,
     /// The worker's version, which the server shows.
     version: String,
-    /// The number of the worker's token; `None` for the server's own workers.
-    token: Option<i64>,
+    /// The ID of the worker's token; `None` for the server's own workers.
+    token_id: Option<i64>,
 }
 
 impl Clone for LocalSource {
     fn clone(&self) -> Self {
         let (database, store, notifier) = (self.database.clone(), self.store.clone(), self.notifier.clone());
-        let (token, version) = (self.token, self.version.clone());
-        Self { token, version, ..Self::new(database, store, notifier, self.policy, self.worker.clone()) }
+        let (token_id, version) = (self.token_id, self.version.clone());
+        Self { token_id, version, ..Self::new(database, store, notifier, self.policy, self.worker.clone()) }
     }
 }
 
@@ -69,13 +69,13 @@ impl LocalSource {
             policy,
             worker,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            token: None,
+            token_id: None,
         }
     }
 
-    /// Sets the number of the worker's token.
-    pub fn with_token(self, token: i64) -> Self {
-        Self { token: Some(token), ..self }
+    /// Sets the ID of the worker's token.
+    pub fn with_token_id(self, token_id: i64) -> Self {
+        Self { token_id: Some(token_id), ..self }
     }
 
     /// Sets the worker's version.
@@ -91,7 +91,7 @@ fn max_duration(task: &Task, policy: &QueuePolicy) -> Duration {
 
 impl JobSource for LocalSource {
     async fn claim(&self) -> Result<Option<ClaimedJob>, SourceError> {
-        let claimant = Claimant { worker: &self.worker, token: self.token };
+        let claimant = Claimant { worker: &self.worker, token_id: self.token_id };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
             let mut transaction = self.database.begin().await?;
@@ -177,7 +177,7 @@ impl JobSource for LocalSource {
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let mut transaction = self.database.begin().await?;
-        health::record_report(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
+        health::record_report(&mut transaction, (&self.worker, &self.version), self.token_id, slots, fault).await?;
         transaction.commit().await?;
         Ok(ledger::tick(&self.database, &self.policy).await?)
     }

@@ -1,13 +1,13 @@
 //! The service's tests, in one binary. Tests that depend on the database engine run on both engines.
 
 mod bench;
-mod campaigns;
 mod command_line;
 mod deploy;
 mod migrations;
 mod plans;
 mod pooler;
 mod queue;
+mod regrades;
 mod retention;
 mod storm;
 mod support;

@@ -36,14 +36,14 @@ const MOST: Duration = Duration::from_secs(3600);
 
 async fn enqueue(database: &Database, turn: Turn) -> i64 {
     let mut transaction = database.begin().await.expect("a transaction");
-    let job = NewJob { lane: Lane::Grading, submission: None, campaign: None, turn, payload: "work" };
+    let job = NewJob { lane: Lane::Grading, submission: None, regrade_id: None, turn, payload: "work" };
     let number = queue::enqueue(&mut transaction, &job).await.expect("a job");
     transaction.commit().await.expect("commit");
     number
 }
 
 async fn claim(database: &Database, worker: &str) -> Option<Claim> {
-    claim_by(database, Claimant { worker, token: None }).await
+    claim_by(database, Claimant { worker, token_id: None }).await
 }
 
 async fn claim_by(database: &Database, claimant: Claimant<'_>) -> Option<Claim> {
@@ -103,8 +103,13 @@ async fn state(database: &Database, job: i64) -> String {
 async fn a_job_comes_and_goes_with_its_upload(fresh: Fresh) {
     let database = &fresh.database;
     let mut transaction = database.begin().await.expect("a transaction");
-    let job =
-        NewJob { lane: Lane::Grading, submission: None, campaign: None, turn: Turn::Student(1), payload: "never seen" };
+    let job = NewJob {
+        lane: Lane::Grading,
+        submission: None,
+        regrade_id: None,
+        turn: Turn::Student(1),
+        payload: "never seen",
+    };
     queue::enqueue(&mut transaction, &job).await.expect("a job");
     // The upload fails here, so there is no commit.
     drop(transaction);
@@ -279,7 +284,7 @@ async fn students_take_turns(fresh: Fresh) {
 
 async fn uploads_go_before_regrades_but_not_for_ever(fresh: Fresh) {
     let database = &fresh.database;
-    let regrades = [enqueue(database, Turn::Campaign(1)).await, enqueue(database, Turn::Campaign(1)).await];
+    let regrades = [enqueue(database, Turn::Regrade(1)).await, enqueue(database, Turn::Regrade(1)).await];
     let upload = enqueue(database, Turn::Student(1)).await;
     assert_eq!(claim(database, "w").await.map(|claimed| claimed.lease.job), Some(upload));
     // After some time a regrade precedes uploads that have just arrived, but not all its jobs do so together.
@@ -294,7 +299,7 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
         let mut transaction = database.read().await.expect("a transaction");
         queue::find_queue_position(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
     };
-    let regrade = enqueue(database, Turn::Campaign(1)).await;
+    let regrade = enqueue(database, Turn::Regrade(1)).await;
     let mut jobs = Vec::new();
     for student in 0..4 {
         jobs.push(enqueue(database, Turn::Student(student)).await);

@@ -63,7 +63,7 @@ async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
         let job = NewJob {
             lane: Lane::Grading,
             submission: None,
-            campaign: None,
+            regrade_id: None,
             turn: Turn::Student(number),
             payload: &payload,
         };

@@ -76,7 +76,7 @@ async fn write_backup(folder: &Path, database: &Database, store: &Store, address
     Ok(manifest)
 }
 
-/// Copies all artifacts of the store into a folder of the backup, which has the form of a store.
+/// Copies all artifacts of the store into the backup's `store` folder, which has the layout of a store.
 async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut total = Artifacts::default();
     fs::create_dir_all(folder)?;

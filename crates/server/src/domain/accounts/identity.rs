@@ -58,7 +58,7 @@ impl fmt::Debug for NewSecret {
 /// A token, without its secret.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct TokenInfo {
-    /// The token's number in the database, by which it is revoked.
+    /// The token's ID, with which it is revoked.
     pub id: i64,
     /// The token's name, given by its owner.
     pub name: String,
@@ -92,7 +92,7 @@ pub(in crate::domain) enum SignInMethod {
     Own,
     /// The person signed in with a link from a course's staff, who may have used it themselves.
     Vouched,
-    /// The person signed in with the token of this number. The session ends with the token.
+    /// The person signed in with a token; the value is its ID. The session ends with the token.
     Token(i64),
 }
 
@@ -115,7 +115,7 @@ pub(in crate::domain) fn digest(secret: &str) -> String {
     to_hex(&Sha256::digest(secret))
 }
 
-/// Returns the owner of a token, and the token's number.
+/// Returns the owner of a token, and the token's ID.
 pub(in crate::domain) async fn account_of_token(
     transaction: &mut Transaction,
     token: &str,

@@ -37,7 +37,7 @@ pub(in crate::domain) struct StartedSignIn {
 pub(in crate::domain) struct PendingSignIn {
     state: String,
     expires_at: i64,
-    /// The service that confirms the sign-in: a platform's number, or a provider.
+    /// The service that confirms the sign-in: a platform's ID, or a provider.
     pub(in crate::domain) service: String,
     /// The account that is being connected; 0 if a person signs in instead.
     pub(in crate::domain) account: i64,

@@ -66,7 +66,7 @@ impl Staff {
         Ok(Link { link })
     }
 
-    /// Returns the number of the course's newest event. With this number, a later request detects changes that were
+    /// Returns the ID of the course's newest event. With this ID, a later request detects changes that were
     /// made in between.
     ///
     /// # Errors

@@ -90,7 +90,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if the course has no submission with this number.
+    /// Fails if the course has no submission with this ID.
     pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
         let statement = "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment

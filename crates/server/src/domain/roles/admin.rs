@@ -41,7 +41,7 @@ pub struct ListedAccount {
 from_row! { ListedAccount { login, name, is_admin, courses, seen_at } }
 from_row! { CourseSize { slug, title, staff, students, assignments, submissions } }
 
-/// Creates a course with a name and a title, and returns its number.
+/// Creates a course with a name and a title, and returns its ID.
 pub(in crate::domain) async fn make_course(
     transaction: &mut Transaction,
     (slug, title): (&str, &str),
@@ -196,7 +196,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// Fails if there is no token with this number.
+    /// Fails if there is no token with this ID.
     pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL

@@ -159,11 +159,11 @@ impl Member {
         Ok(submission)
     }
 
-    /// Returns a submission by its number. Students find only their own, staff all submissions of the course.
+    /// Returns a submission by its ID. Students find only their own, staff all submissions of the course.
     ///
     /// # Errors
     ///
-    /// Fails if the member can see no submission with this number.
+    /// Fails if the member can see no submission with this ID.
     pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         self.find_submission(&mut transaction, id).await
@@ -173,14 +173,14 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// Fails if the member can see no submission with this number.
+    /// Fails if the member can see no submission with this ID.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
-    /// Opens the report called `name` of the submission with the number `id`.
+    /// Opens the report called `name` of the submission with the ID `id`.
     ///
     /// # Errors
     ///
@@ -197,7 +197,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// Fails if the member can see no submission with this number.
+    /// Fails if the member can see no submission with this ID.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
         let submission = self.read_with_bytes(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));

@@ -100,7 +100,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// Fails if the person has no token with this number.
+    /// Fails if the person has no token with this ID.
     pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL";

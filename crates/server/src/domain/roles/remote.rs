@@ -15,7 +15,7 @@ use std::path::Path;
 /// A worker on another machine, identified by its token.
 pub struct RemoteWorker {
     pub(crate) app: App,
-    token: i64,
+    token_id: i64,
     worker: String,
 }
 
@@ -38,9 +38,9 @@ impl From<SourceError> for Problem {
 }
 
 impl RemoteWorker {
-    pub(in crate::domain) fn new(app: App, id: i64, token: &str, name: &str) -> Self {
+    pub(in crate::domain) fn new(app: App, token_id: i64, token_name: &str, name: &str) -> Self {
         let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
-        Self { app, token: id, worker: format!("{token}/{plain}") }
+        Self { app, token_id, worker: format!("{token_name}/{plain}") }
     }
 
     fn source(&self) -> LocalSource {
@@ -52,7 +52,7 @@ impl RemoteWorker {
             parts.policy,
             self.worker.clone(),
         )
-        .with_token(self.token)
+        .with_token_id(self.token_id)
     }
 
     /// Returns whether a lease was given to this worker's token. Requests with other leases are ignored.
@@ -60,7 +60,7 @@ impl RemoteWorker {
         let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
         let row = transaction.row(statement, values![lease.job, lease.attempt]).await?;
-        Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
+        Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token_id))
     }
 
     /// Returns the next waiting job with its task; `None` if the queue is empty.
@@ -175,7 +175,7 @@ impl RemoteWorker {
         let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT payload FROM job
             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
-        let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token]).await?;
+        let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token_id]).await?;
         let row = row.ok_or_else(|| Problem::not_found("job of yours"))?;
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }

@@ -55,12 +55,12 @@ impl App {
         Ok(Person { account, session, app: self.clone() })
     }
 
-    /// Returns the worker to which a token belongs. The worker itself chooses the name.
+    /// Returns the worker to which a token belongs. The worker itself chooses its name.
     ///
     /// # Errors
     ///
     /// Fails if the token does not belong to a worker, or is no longer valid.
-    pub async fn remote(&self, token: &str, name: &str) -> Result<RemoteWorker, Problem> {
+    pub async fn authenticate_worker(&self, token: &str, name: &str) -> Result<RemoteWorker, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
         let row = transaction.row(statement, values![identity::digest(token)]).await?;

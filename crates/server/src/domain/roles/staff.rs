@@ -240,7 +240,7 @@ impl Staff {
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 
-    /// Returns a page of the submissions to an assignment, oldest first, from the first one after the number `after`.
+    /// Returns a page of the submissions to an assignment, oldest first, from the first one after the ID `after`.
     /// The page after the last submission is empty.
     ///
     /// # Errors

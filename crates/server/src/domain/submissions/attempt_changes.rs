@@ -52,7 +52,7 @@ pub struct StoredResult {
 }
 
 impl Member {
-    /// Returns what is stored with the course's results, by the number of the result. Results that an older version
+    /// Returns what is stored with the course's results, by the ID of the result. Results that an older version
     /// stored have empty parts. Hidden groups are included, so students may read this only if the groups are published
     /// or the suite hides no groups.
     ///
@@ -76,8 +76,8 @@ impl Member {
         Ok(rows.iter().map(read_row).collect::<Result<_, DbError>>()?)
     }
 
-    /// Returns the changes between consecutive graded attempts of one person, newest first. Each is stored under the
-    /// number of the later attempt. Attempts with withheld groups are left out.
+    /// Returns the changes between consecutive graded attempts of one person, newest first. Each is stored under the ID
+    /// of the later attempt. Attempts with withheld groups are left out.
     ///
     /// # Errors
     ///

@@ -32,9 +32,9 @@ pub struct StudentHistory {
 /// A student's unanswered request for a review.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The number of the submission on this server.
+    /// The submission's ID.
     pub submission: i64,
-    /// The number of the submission among those of its owner to the assignment.
+    /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
     /// The login of the submission's owner.
     pub login: String,

@@ -1,6 +1,6 @@
 //! Regrades: new results that are stored next to the old ones, at low priority. No grade changes until a member of
 //! staff applies the regrade; it can also be discarded.
-use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
+use crate::domain::{Settings, Staff, submissions::regrade_steps, view::Assignment};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     problem::{Problem, ensure},
@@ -28,7 +28,7 @@ pub enum RegradeState {
 /// A regrade, with the grades that it would change or has changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Regrade {
-    /// The regrade's number.
+    /// The regrade's ID.
     pub id: i64,
     /// The state of the regrade.
     pub state: RegradeState,
@@ -59,7 +59,7 @@ pub struct Regrade {
     pub fewer: usize,
     /// The changes, in the order of submissions, up to the requested number.
     pub changes: Vec<Change>,
-    /// The number of the last shown submission, if there are further changes; null otherwise.
+    /// The cursor of the next page: the ID of the last listed submission; null on the last page.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
 }
@@ -75,9 +75,9 @@ impl Regrade {
 /// A grade that staff set, which a regrade does not change.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct StaffGrade {
-    /// The submission's number on this server.
+    /// The submission's ID.
     pub submission: i64,
-    /// The submission's number among its owner's submissions to this assignment.
+    /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
     /// The login of the owner.
     pub login: String,
@@ -94,9 +94,9 @@ from_row! { StaffGrade { submission, number, login, points, old_max_points, new_
 /// A grade that the regrade changes, with the likely reasons.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Change {
-    /// The submission's number on this server.
+    /// The submission's ID.
     pub submission: i64,
-    /// The submission's number among its owner's submissions to this assignment.
+    /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
     /// The login of the owner.
     pub login: String,
@@ -153,13 +153,13 @@ impl Staff {
         let statement = "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
             VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id";
         let values = values![assignment.id, reason, settings.to_json(), self.account.id];
-        let campaign = transaction.one(statement, values).await?.int("id")?;
+        let id = transaction.one(statement, values).await?.int("id")?;
         let regraded = Assignment { settings, ..assignment };
-        let count = campaign::enqueue_missing(&mut transaction, campaign, &regraded).await?;
-        let text = format!("began regrade {campaign} of {count} submissions: {reason}");
+        let count = regrade_steps::enqueue_missing(&mut transaction, id, &regraded).await?;
+        let text = format!("began regrade {id} of {count} submissions: {reason}");
         self.log_event(&mut transaction, "regrade", Some(regraded.id), &text).await?;
         self.app.0.notifier.commit(transaction).await?;
-        self.show_regrade(slug, campaign, None).await
+        self.show_regrade(slug, id, None).await
     }
 
     /// Returns the regrades of an assignment, newest first, without their changes.
@@ -172,10 +172,10 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// Returns a regrade and its changes, beginning after the submission with the number `after`.
+    /// Returns a regrade and its changes, beginning after the submission with the ID `after`.
     ///
     /// # Errors
-    /// Fails if there is no regrade of this number.
+    /// Fails if there is no regrade with this ID.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
@@ -190,7 +190,7 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         let (settings, _) = self.lock_open(&mut transaction, &assignment, id).await?;
-        campaign::enqueue_missing(&mut transaction, id, &Assignment { settings, ..assignment }).await?;
+        regrade_steps::enqueue_missing(&mut transaction, id, &Assignment { settings, ..assignment }).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }
 
@@ -205,7 +205,7 @@ impl Staff {
         let mut transaction = self.begin().await?;
         let (settings, reason) = self.lock_open(&mut transaction, &assignment, id).await?;
         let regraded = Assignment { settings: settings.clone(), ..assignment };
-        let missing = campaign::enqueue_missing(&mut transaction, id, &regraded).await?;
+        let missing = regrade_steps::enqueue_missing(&mut transaction, id, &regraded).await?;
         if missing > 0 {
             self.app.0.notifier.commit(transaction).await?;
             return Err(Problem::conflict(
@@ -226,7 +226,7 @@ impl Staff {
         let changes = before.grading_changes(&settings).join("; ");
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
         transaction.execute(statement, values![before.with_grading_of(&settings).to_json(), regraded.id]).await?;
-        campaign::apply(&mut transaction, id, (self.account.id, self.course, regraded.id), &reason).await?;
+        regrade_steps::apply(&mut transaction, id, (self.account.id, self.course, regraded.id), &reason).await?;
         self.decide(transaction, regraded.id, id, "applied", &changes).await?;
         self.show_regrade(slug, id, None).await
     }
@@ -240,7 +240,7 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
         self.lock_open(&mut transaction, &assignment, id).await?;
-        campaign::cancel(&mut transaction, id).await?;
+        regrade_steps::cancel(&mut transaction, id).await?;
         self.decide(transaction, assignment.id, id, "discarded", "").await?;
         self.show_regrade(slug, id, None).await
     }

@@ -24,7 +24,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if there is no submission with this number, it is being graded, or its bytes are no longer stored.
+    /// Fails if there is no submission with this ID, it is being graded, or its bytes are no longer stored.
     pub async fn grade_again(&self, id: i64) -> Result<EnqueuedJobs, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;

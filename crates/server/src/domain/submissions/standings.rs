@@ -49,7 +49,7 @@ pub struct ShortStanding {
 /// The part of a counted submission that statistics need.
 #[derive(Debug, Clone)]
 pub struct CountedSubmission {
-    /// The submission's number.
+    /// The submission's ID.
     pub id: i64,
     /// The points that count: those that staff set, or the grader's after the deduction for being late.
     pub points: Option<String>,
@@ -65,7 +65,7 @@ pub struct CountedSubmission {
     pub summary: String,
 }
 
-/// The standings that simultaneous requests share, by the assignment's number.
+/// The standings that simultaneous requests share, by the assignment's ID.
 #[derive(Debug, Default)]
 pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer>>>);
 

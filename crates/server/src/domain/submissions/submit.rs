@@ -219,7 +219,7 @@ impl Member {
         let values = values![assignment.id, account, number, form, upload.name, digest, size, came_at];
         let submission = transaction.one(statement, values).await?.int("id")?;
         let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
-        let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };
+        let job = NewJob { lane: Lane::Grading, submission: Some(submission), regrade_id: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
         score::queue_changed_scores(transaction, submission).await?;
         if let Some(key) = upload.key {

@@ -31,8 +31,8 @@ pub(super) struct MemberInput {
     /// The member's role: `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-    /// The number of the newest event of the audit log that the sender has seen. If this member was changed after it,
-    /// the request is rejected. Without this field, it is not checked.
+    /// The ID of the newest event of the audit log that the sender has seen. If this member was changed after
+    /// it, the request is rejected. Without this field, nothing is checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     #[serde(rename = "seen")]
     seen_event: Option<i64>,
@@ -41,7 +41,7 @@ pub(super) struct MemberInput {
 /// The confirmation that a removal requires.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
-pub(super) struct Confirm {
+pub(super) struct RemovalConfirmation {
     /// The short name of the course that is removed, as confirmation.
     confirm: String,
 }
@@ -95,7 +95,7 @@ answers! { OK:
 actions! { NO_CONTENT:
     /// Removes a course with its assignments, submissions and log. Accounts are kept. This cannot be undone.
     delete "/api/v1/courses/{course}" "administration"
-        remove_course(admin: Admin, { course }, ?query: Confirm) -> "Removed": async {
+        remove_course(admin: Admin, { course }, ?query: RemovalConfirmation) -> "Removed": async {
             let other = Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm");
             ensure(query.confirm == course, other)?;
             admin.remove_course(&course).await

@@ -24,8 +24,11 @@ use utoipa::ToSchema;
 /// The parameters of an upload whose body is the file itself, not a form.
 #[derive(Deserialize)]
 pub(super) struct UploadParameters {
+    /// The file's name.
     name: Option<String>,
-    form: Option<String>,
+    /// The kind of submission: `program`, `sources` or `traces`. By default it is recognized from the file.
+    #[serde(rename = "form")]
+    kind: Option<String>,
 }
 
 /// Uploads a submission. The body is the file, or a form (`multipart/form-data`) with a field `file`. With an
@@ -50,7 +53,7 @@ pub(super) async fn submit(
         Some(key) => Some(key.to_str().map_err(|_| Problem::invalid("Idempotency-Key is not ASCII"))?),
     };
     let SubmitResult { submission, repeated } =
-        receive(&member, &assignment, request, about.name.as_deref(), about.form.as_deref(), key).await?;
+        receive(&member, &assignment, request, about.name.as_deref(), about.kind.as_deref(), key).await?;
     let status = if repeated { StatusCode::OK } else { StatusCode::CREATED };
     let address = format!("/api/v1/courses/{}/submissions/{}", member.slug, submission.id);
     Ok((status, [(header::LOCATION, address)], Json(submission)).into_response())

@@ -109,7 +109,7 @@ struct MembersPage {
     /// The address of the next page of members; `None` on the last page.
     after: Option<String>,
     platforms: Vec<String>,
-    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
     seen_event: i64,
     /// The login of the person whom the last request changed, and a sign-in link if one was created.
@@ -206,7 +206,7 @@ impl People {
 async fn render_members(staff: &Staff, filter: People, update: Option<(String, Option<String>)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).with_parent(format!("/c/{slug}/members"), "Members");
-    // Read the number of the newest event before the members, so that later changes are detected.
+    // Read the ID of the newest event before the members, so that later changes are detected.
     let seen_event = staff.last_event().await?;
     let mut members = staff.members().await?;
     let staff_count = members.iter().filter(|member| member.role == "staff").count();

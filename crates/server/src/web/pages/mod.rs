@@ -198,7 +198,7 @@ impl PageFrame {
     /// Returns the frame for the page of an assignment.
     fn assignment(member: &Member, assignment: &Assignment) -> Self {
         let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
-        let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
+        let pages = [("/class", "Class"), ("", "Submit"), ("/settings", "Settings")];
         let frame = Self::course(member);
         match member.is_staff {
             true => frame.with_parent(format!("{address}/class"), &assignment.title).with_pages(&address, &pages),

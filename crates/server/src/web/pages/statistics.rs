@@ -16,7 +16,7 @@ pub(super) const SECTIONS: [(&str, &str); 6] = [
     ("waiting", "not graded yet"),
     ("never-ran", "never ran"),
     ("late", "late"),
-    ("missing", "nothing handed in"),
+    ("missing", "no submission"),
 ];
 
 /// Returns whether a student is in a category. All students are in the category with the empty name.

@@ -26,9 +26,9 @@ struct StudentPage {
     slug: String,
     assignment: Assignment,
     work: StudentHistory,
-    /// Sentences about the changes between attempts, by the number of the later submission.
+    /// Sentences about the changes between attempts, by the ID of the later submission.
     changes: BTreeMap<i64, String>,
-    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
     seen_event: i64,
 }
@@ -46,7 +46,7 @@ struct ImportPage {
     is_done: bool,
     /// A table of all sign-in links, as a `data:` URL that the browser can save.
     download: String,
-    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
     /// detected.
     seen_event: i64,
 }
@@ -98,7 +98,7 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn show(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    // Read the number of the newest event before the submissions, so that later changes are detected.
+    // Read the ID of the newest event before the submissions, so that later changes are detected.
     let seen_event = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);

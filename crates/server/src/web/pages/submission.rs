@@ -48,7 +48,7 @@ struct SubmissionPage {
 pub(super) async fn show_assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
     let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
-    let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Hand in");
+    let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Submit");
     let work = OwnWork::read(&member, &assignment).await?;
     render(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }

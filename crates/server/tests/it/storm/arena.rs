@@ -170,7 +170,7 @@ impl Arena {
         let job = NewJob {
             lane: Lane::Grading,
             submission: Some(submission),
-            campaign: None,
+            regrade_id: None,
             turn: Turn::Student(number),
             payload: &payload,
         };

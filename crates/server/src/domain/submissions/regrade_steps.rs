@@ -16,18 +16,18 @@ use crate::{
 /// Returns their number.
 pub(in crate::domain) async fn enqueue_missing(
     transaction: &mut Transaction,
-    campaign: i64,
+    regrade_id: i64,
     assignment: &Assignment,
 ) -> Result<u64, Problem> {
     // No submission is removed before this transaction ends.
     let statement = "SELECT count(*) AS n FROM
         (SELECT id FROM submission WHERE assignment = ? ORDER BY id {for update}) AS held";
     transaction.one(statement, values![assignment.id]).await?;
-    let turn = Turn::Campaign(campaign);
+    let turn = Turn::Regrade(regrade_id);
     let from = turn.next(transaction).await?;
-    let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];
+    let mut values: Vec<Value> = vec![regrade_id.into(), turn.key().into()];
     values.extend(statement_pieces(assignment)?.into_iter().map(Value::from));
-    values.extend([from, turn.spacing_millis(), assignment.id, campaign].map(Value::from));
+    values.extend([from, turn.spacing_millis(), assignment.id, regrade_id].map(Value::from));
     // The unary plus prevents an index, with which SQLite would search all jobs of the regrade for each submission.
     let statement = concat!(
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
@@ -57,7 +57,7 @@ macro_rules! grade_text {
 /// grader failed on a submission, its old grade stays.
 pub(in crate::domain) async fn apply(
     transaction: &mut Transaction,
-    campaign: i64,
+    regrade_id: i64,
     (by, course, assignment): (i64, i64, i64),
     reason: &str,
 ) -> Result<(), DbError> {
@@ -66,7 +66,7 @@ pub(in crate::domain) async fn apply(
         SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
         FROM result LEFT JOIN grade ON grade.submission = result.submission
         WHERE result.campaign = ? AND result.code <> ?";
-    transaction.execute(statement, values![by, campaign, reason, campaign, JUDGE_ERROR]).await?;
+    transaction.execute(statement, values![by, regrade_id, reason, regrade_id, JUDGE_ERROR]).await?;
     let statement = concat!(
         "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
@@ -81,19 +81,19 @@ pub(in crate::domain) async fn apply(
            AND (old.id IS NULL OR old.code <> result.code
                OR coalesce(old.points, '') <> coalesce(result.points, ''))"
     );
-    transaction.execute(statement, values![by, course, assignment, reason, campaign, JUDGE_ERROR]).await?;
+    transaction.execute(statement, values![by, course, assignment, reason, regrade_id, JUDGE_ERROR]).await?;
     let statement = "INSERT INTO grade (submission, result, set_at)
         SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
-    transaction.execute(statement, values![campaign, JUDGE_ERROR]).await?;
-    score::queue_regraded_scores(transaction, campaign).await
+    transaction.execute(statement, values![regrade_id, JUDGE_ERROR]).await?;
+    score::queue_regraded_scores(transaction, regrade_id).await
 }
 
 /// Cancels the waiting jobs of a regrade.
-pub(in crate::domain) async fn cancel(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+pub(in crate::domain) async fn cancel(transaction: &mut Transaction, regrade_id: i64) -> Result<(), DbError> {
     let statement = "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
            ORDER BY id {for update})
         UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
         WHERE id IN (SELECT id FROM left_over)";
-    transaction.execute(statement, values![campaign]).await.map(drop)
+    transaction.execute(statement, values![regrade_id]).await.map(drop)
 }
