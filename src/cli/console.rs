@@ -48,14 +48,14 @@ fn is_quiet() -> bool {
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    let wanted = match COLOR.get().copied().unwrap_or(ColorChoice::Auto) {
+    let uses_color = match COLOR.get().copied().unwrap_or(ColorChoice::Auto) {
         ColorChoice::Always => true,
         ColorChoice::Never => false,
         ColorChoice::Auto if is_set("NO_COLOR") => false,
         ColorChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
         ColorChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
     };
-    match (wanted, io::stdout().is_terminal() && shows_signs()) {
+    match (uses_color, io::stdout().is_terminal() && shows_signs()) {
         (false, _) => Style::Plain,
         (true, false) => Style::Color,
         (true, true) => Style::ColorAndSigns,

@@ -25,7 +25,7 @@ pub fn main() -> ExitCode {
         return sample::main(std::env::args_os(), Some(mistake));
     }
     // This is checked before the other commands, because it is called most often and must start quickly.
-    crate::original::run_if_requested(&original::Program).unwrap_or_else(run)
+    crate::original::run_if_requested(&original::CliServices).unwrap_or_else(run)
 }
 
 /// Runs any command except for the drop-in for the original.
@@ -58,7 +58,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     // If options precede the command, it was not recognized above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
-        return crate::original::main(&name, &original.words, &original::Program);
+        return crate::original::main(&name, &original.words, &original::CliServices);
     }
     commands::run(&arguments.command).map_or_else(|error| report_fault(&error), ExitCode::from)
 }

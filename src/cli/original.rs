@@ -16,9 +16,9 @@ const FOLDER: &str = "pngs";
 const PICTURE_SIDE: u32 = 512;
 
 /// The part of the drop-in that this program implements.
-pub(super) struct Program;
+pub(super) struct CliServices;
 
-impl Services for Program {
+impl Services for CliServices {
     fn prepare(&self) {
         sandbox::let_large_writes_fail();
     }

@@ -270,7 +270,7 @@ impl Folder {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 bail!("{} is not a folder; choose one for the pictures", name.display())
             }
-            Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
+            Err(error) => return Err(error).with_context(|| format!("cannot create the folder {}", name.display())),
         }
         let opened = files::Folder::open_to_write(name).with_context(|| format!("cannot open {}", name.display()))?;
         Ok(Self(opened))

@@ -152,7 +152,7 @@ fn colors_only_decorate() {
         tables: true,
         other_file_kind: None,
     };
-    let colored = check.text(Style::Color);
+    let colored = check.render_text(Style::Color);
     let mut plain = String::new();
     for piece in colored.split('\x1b') {
         // The text before the first piece has no color code.
@@ -163,7 +163,7 @@ fn colors_only_decorate() {
         };
     }
     assert_ne!(colored, plain);
-    assert_eq!(check.text(Style::Plain), plain);
+    assert_eq!(check.render_text(Style::Plain), plain);
 }
 
 /// The bytes may end inside the last list of a record. `check` and `trace info` then count the same complete records.

@@ -179,7 +179,7 @@ fn invalid_requests_are_reported() {
         ("--scene scene.xml --step 4 --pair pe:2,0", "has 3 steps, counted from 1; there is no step 4"),
         ("--scene scene.xml --step 0 --pair pe:2,0", "there is no step 0"),
         ("--scene scene.xml --step 1 --pair pe:0,0", "particle 0 is an end of edge 0"),
-        ("--scene scene.xml --step 1 --pair pe:2,1", "there is no edge 1; the scene has 1"),
+        ("--scene scene.xml --step 1 --pair pe:2,1", "there is no edge 1; the scene's last edge is 0"),
         ("--scene scene.xml --step 1 --pair pp:1,1", "a particle cannot form a pair with itself"),
         ("--scene scene.xml --step 1 --pair pe:2,0 --pass 99", "there is no pass 99"),
         ("--scene scene.xml --step 1 --pair pe:2,0 --pass 0", "0 is not in 1.."),

@@ -4,7 +4,7 @@ use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{number_format::format_g, vector::Vec2};
 use fosssim_render::{detection, plot::PlotTarget};
-use fosssim_report::{detect::Detect, style::Style};
+use fosssim_report::{detect::DetectReport, style::Style};
 use serde::Deserialize;
 use serde_json::json;
 
@@ -57,11 +57,11 @@ impl PairRequest {
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.to_motion()?)
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
-    let report = Detect { study: &study, place: None };
+    let report = DetectReport { study: &study, place: None };
     let picture = |embedding| detection::render_picture(&study, &report.title(), embedding).into_bytes();
     let value = json!({ "decision": report.decision(format_g), "collides": study.answer.decision.collides() });
     let parts = vec![
-        report.text(Style::Plain).into_bytes(),
+        report.render_text(Style::Plain).into_bytes(),
         report.json().into_bytes(),
         picture(PlotTarget::File),
         picture(PlotTarget::Page),

@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
 /// The length of the longest first record in bytes, except for scenes that are too large to be dropped.
-const MAX_RECORD_BYTES: u64 = 1 << 16;
+const MAX_FIRST_RECORD_BYTES: u64 = 1 << 16;
 
 /// Lists the names of the scenes by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
@@ -50,7 +50,7 @@ pub(crate) fn find_xml(name: &str) -> Result<&'static [u8], String> {
 pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // If there is an error, its message is in `fault`.
-    let _ = open(host, file, &fault).take(MAX_RECORD_BYTES).read_to_end(&mut start);
+    let _ = open(host, file, &fault).take(MAX_FIRST_RECORD_BYTES).read_to_end(&mut start);
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
     }

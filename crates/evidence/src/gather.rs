@@ -135,8 +135,8 @@ pub fn gather(
             break;
         }
         gathering.keep_states(step, &mid, &end);
-        let wanted = close.contains(&step).then(|| find_wanted_calls(focus, step));
-        let Some(count) = gathering.step(step, &before, (&mid, &end), wanted.as_deref()) else { break };
+        let wanted_calls = close.contains(&step).then(|| find_wanted_calls(focus, step));
+        let Some(count) = gathering.step(step, &before, (&mid, &end), wanted_calls.as_deref()) else { break };
         let ruling = rulings.get(step as usize - 1);
         let is_wrong = ruling.is_some_and(wrong);
         seen_wrong |= is_wrong;

@@ -30,8 +30,8 @@ pub fn inspect(
     let none = PolynomialLog::default();
     let mid = records.map(|(mid, _)| mid).filter(|_| matches!(scene.collision, Collision::Hybrid { .. }));
     let log = records.map_or(&none, |(_, polynomials)| polynomials);
-    let wanted = [(WantedCalls::Every, pair)];
-    let mut watch = Inspector::new(scene, step, mid, (log, log.len()), &wanted);
+    let wanted_calls = [(WantedCalls::Every, pair)];
+    let mut watch = Inspector::new(scene, step, mid, (log, log.len()), &wanted_calls);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     simulation.state_mut().clone_from(before);
     simulation.set_steps_done(step - 1);

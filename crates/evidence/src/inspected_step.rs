@@ -366,7 +366,7 @@ impl Observer for Inspector<'_> {
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
         let motion = || PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let is_hit = matches!(decision, Decision::Hit { .. });
-        let wanted = self.wanted_calls.iter().any(|(which, one)| {
+        let is_wanted = self.wanted_calls.iter().any(|(which, one)| {
             *one == pair
                 && match which {
                     WantedCalls::Hits => is_hit,
@@ -374,7 +374,7 @@ impl Observer for Inspector<'_> {
                     WantedCalls::Every => true,
                 }
         });
-        if wanted {
+        if is_wanted {
             let study = Study::for_motion(&motion());
             // Only at the end of the step is it known whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });

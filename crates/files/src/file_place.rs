@@ -39,16 +39,16 @@ impl FilePlace {
     ///
     /// # Errors
     /// Fails like [`Folder::open_file`].
-    pub fn open_file(&self, most: u64) -> Result<(File, u64), FileError> {
-        self.base().and_then(|folder| folder.open_file(self.relative_path.as_os_str(), most))
+    pub fn open_file(&self, max_bytes: u64) -> Result<(File, u64), FileError> {
+        self.base().and_then(|folder| folder.open_file(self.relative_path.as_os_str(), max_bytes))
     }
 
     /// Returns the contents of the regular file at this place.
     ///
     /// # Errors
     /// Fails like [`Folder::read`].
-    pub fn read(&self, most: u64) -> Result<Vec<u8>, FileError> {
-        self.base().and_then(|folder| folder.read(self.relative_path.as_os_str(), most))
+    pub fn read(&self, max_bytes: u64) -> Result<Vec<u8>, FileError> {
+        self.base().and_then(|folder| folder.read(self.relative_path.as_os_str(), max_bytes))
     }
 
     /// Returns whether there is a regular file at this place.

@@ -44,7 +44,7 @@ impl Replacement {
             let unfinished = OsString::from(format!("{UNFINISHED_PREFIX}{:x}-{count:x}-{now:x}", process::id()));
             match openat(&folder, &unfinished, flags, Mode::from_raw_mode(mode.unwrap_or(0o666))) {
                 Ok(fd) => {
-                    let made = Self {
+                    let replacement = Self {
                         folder,
                         file: fd.into(),
                         unfinished_name: unfinished,
@@ -54,9 +54,9 @@ impl Replacement {
                     if let Some(mode) = mode {
                         // The process's mask limits the permission bits of a new file. If the file replaces another
                         // one, it must have the same bits.
-                        made.file.set_permissions(Permissions::from_mode(mode))?;
+                        replacement.file.set_permissions(Permissions::from_mode(mode))?;
                     }
-                    return Ok(made);
+                    return Ok(replacement);
                 }
                 Err(Errno::EXIST) => {}
                 Err(error) => {

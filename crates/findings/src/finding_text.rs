@@ -57,8 +57,8 @@ impl Display for SteplessFinding<'_> {
             FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairText(expected.pair);
                 let (expected, actual) = (expected.normal, actual.normal);
-                let apart = VectorDifference { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
-                write!(f, "{pair}: contact normal {apart}")
+                let difference = VectorDifference { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
+                write!(f, "{pair}: contact normal {difference}")
             }
             FindingDetail::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;

@@ -34,7 +34,7 @@ pub struct CourseNote {
     /// The text of the note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
-    /// The address of a lecture or a section, which begins with `http` or `https`.
+    /// The URL of a lecture or a section, which begins with `http` or `https`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
     /// The points in the course's rubric. They are shown, but not counted.
@@ -43,7 +43,7 @@ pub struct CourseNote {
 }
 
 impl CourseNote {
-    /// Formats the note as one line. `text` and `link` format its text and its address.
+    /// Formats the note as one line. `text` and `link` format its text and its URL.
     pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
@@ -52,7 +52,7 @@ impl CourseNote {
     }
 }
 
-/// Formats the note as one line, with the address as it is.
+/// Formats the note as one line, with the URL as it is.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(&self.line(str::to_owned, str::to_owned))
@@ -210,14 +210,14 @@ impl Grade {
 
     /// Returns whether both grades have the same scenes, in the same groups and for the same points.
     pub fn has_same_suite(&self, other: &Self) -> bool {
-        let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
+        let is_same_group = |(own, other): (&GroupGrade, &GroupGrade)| {
             (&own.name, own.visibility, own.hints, own.max_points)
                 == (&other.name, other.visibility, other.hints, other.max_points)
                 && own.scenes.iter().map(|scene| &scene.scene).eq(other.scenes.iter().map(|scene| &scene.scene))
         };
         (&self.suite, self.rules, self.shows_output) == (&other.suite, other.rules, other.shows_output)
             && self.groups.len() == other.groups.len()
-            && self.groups.iter().zip(&other.groups).all(alike)
+            && self.groups.iter().zip(&other.groups).all(is_same_group)
     }
 
     /// Returns the number of scenes whose results were reused from an earlier grading.

@@ -112,10 +112,10 @@ fn source(scenes: &[&SceneResult]) -> SpeedSource {
 fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
     // The clock has a resolution of a microsecond, so it may measure zero.
     let seconds = |time: Duration| time.as_secs_f64().max(1e-6);
-    let sum = |of: &dyn Fn(&[TimedRun]) -> TimedRun| {
+    let sum = |choose_run: &dyn Fn(&[TimedRun]) -> TimedRun| {
         let (submission, reference) = scenes
             .iter()
-            .map(|runs| of(runs))
+            .map(|runs| choose_run(runs))
             .fold((0.0, 0.0), |sum, run| (sum.0 + seconds(run.submission), sum.1 + seconds(run.reference)));
         submission / reference
     };

@@ -246,11 +246,11 @@ fn fair_rejection_reason(judged: &Outcome) -> BadTrace {
     }
 }
 
-/// Returns the first `most` bytes of the output as text. Bytes that are not UTF-8 are replaced.
+/// Returns the first `max_bytes` bytes of the output as text. Bytes that are not UTF-8 are replaced.
 #[cfg(target_os = "linux")]
-pub(super) fn truncate(printed: &[u8], most: usize) -> String {
-    let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
-    if printed.len() > most {
+pub(super) fn truncate(printed: &[u8], max_bytes: usize) -> String {
+    let mut text = String::from_utf8_lossy(&printed[..printed.len().min(max_bytes)]).into_owned();
+    if printed.len() > max_bytes {
         text.push_str("\n[cut short]");
     }
     text

@@ -207,7 +207,7 @@ impl Runner<'_> {
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(RunningProgram, TemporaryFolder), String> {
-        let folder = self.folders.take_folder().map_err(|error| format!("cannot make the run's folder: {error}"))?;
+        let folder = self.folders.take_folder().map_err(|error| format!("cannot create the run's folder: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())

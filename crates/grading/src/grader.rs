@@ -329,12 +329,12 @@ impl<'a> SubmissionGrading<'a> {
             self.shared.store_result(&claim.key, self.submission, &result);
         }
         tell(SceneEvent::Done(cached));
-        let mut known = lock(&self.progress);
-        known.reported[number] = Some((result, cached));
-        known.missing -= 1;
-        if known.missing == 0 {
-            let results = std::mem::take(&mut known.reported).into_iter().flatten().collect();
-            drop(known);
+        let mut progress = lock(&self.progress);
+        progress.reported[number] = Some((result, cached));
+        progress.missing -= 1;
+        if progress.missing == 0 {
+            let results = std::mem::take(&mut progress.reported).into_iter().flatten().collect();
+            drop(progress);
             let grade = Box::new(self.grade(results));
             if let Some(finish) = self.grader.receive_grade {
                 finish(&grade);
@@ -354,8 +354,8 @@ impl<'a> SubmissionGrading<'a> {
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &ResultKey| shared.find_result(key, trace.as_ref(), grader.cards, students);
         // If the digest is known without a copy, the result is found or claimed before anything is copied.
-        let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
-        let known = match known.map(|key| shared.claim(key, find)).transpose() {
+        let claim = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
+        let claim = match claim.map(|key| shared.claim(key, find)).transpose() {
             Ok(claim) => claim,
             Err(done) => return *done,
         };
@@ -372,7 +372,7 @@ impl<'a> SubmissionGrading<'a> {
             }
             Ok(staged) => {
                 let key = shared.key(&staged.digest, scene, &program_name(&staged.program), students);
-                match known.filter(|claim| claim.key == key).map_or_else(|| shared.claim(key, find), Ok) {
+                match claim.filter(|claim| claim.key == key).map_or_else(|| shared.claim(key, find), Ok) {
                     Err(done) => *done,
                     Ok(claim) => {
                         let result = self.run(staged, scene, trace.as_ref(), tell);
@@ -428,15 +428,15 @@ impl<'a> SubmissionGrading<'a> {
 
     /// Records a result, and decides whether further scenes are skipped because of it.
     fn record_result(&self, scene: usize, result: &SceneResult) {
-        let mut known = lock(&self.progress);
-        known.finished[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
-        if known.skip_start.is_none_or(|(end, _)| scene < end) {
+        let mut progress = lock(&self.progress);
+        progress.finished[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
+        if progress.skip_start.is_none_or(|(end, _)| scene < end) {
             let end = skipped_scenes::find_first_skipped(
                 &self.grader.plan.skip_limits,
                 self.grader.options.fail_fast,
-                &known.finished,
+                &progress.finished,
             );
-            known.skip_start = end.or(known.skip_start);
+            progress.skip_start = end.or(progress.skip_start);
         }
     }
 

@@ -110,8 +110,8 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 
 /// Returns a file of an assignment. The path is the whole path, or the path within an assignment's folder.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let of = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
-    Assignment::list_default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
+    let find_in = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
+    Assignment::list_default_first().into_iter().find_map(find_in).or_else(|| find_below(root, path))
 }
 
 /// Returns the file at a path below a folder. [`Dir::get_file`] is slower, because it compares the path with that of

@@ -135,9 +135,9 @@ fn resolve(
                     Ok(loaded) => {
                         // If a file has the name of an embedded scene, the recording of that scene is used only if
                         // their contents are the same.
-                        let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
-                        let recording = known.then(|| library::recording(&name)).flatten();
-                        let beyond = milestone.filter(|_| !known).into_iter();
+                        let is_unchanged = library::scene(&name).is_some_and(|embedded| embedded == xml);
+                        let recording = is_unchanged.then(|| library::recording(&name)).flatten();
+                        let beyond = milestone.filter(|_| !is_unchanged).into_iter();
                         for unknown in beyond.flat_map(|milestone| loaded.scene.unknown_features(milestone)) {
                             problems.push((at, format!("scene {name}: {unknown}")));
                         }

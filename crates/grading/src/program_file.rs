@@ -49,17 +49,20 @@ mod tests {
             std::fs::write(at(name), name).expect("written");
         }
         let file = File::open(at("one")).expect("a file");
-        let known = |name: &str, has_other_owner| {
+        let program_file = |name: &str, has_other_owner| {
             let identity = Identity::from_metadata(&std::fs::metadata(at(name)).expect("data"));
             ProgramFile { identity, is_shared: has_other_owner, has_other_owner }
         };
         assert!(!belongs_to_another(&file, None).expect("known"), "one name is enough");
         std::fs::hard_link(at("one"), at("backup")).expect("a backup");
-        assert!(!belongs_to_another(&file, Some(&known("one", false))).expect("known"));
-        assert!(belongs_to_another(&file, Some(&known("one", true))).expect("known"));
-        for known in [None, Some(known("other", false))] {
+        assert!(!belongs_to_another(&file, Some(&program_file("one", false))).expect("known"));
+        assert!(belongs_to_another(&file, Some(&program_file("one", true))).expect("known"));
+        for program_file in [None, Some(program_file("other", false))] {
             assert!(
-                belongs_to_another(&file, known.as_ref()).expect_err("exchanged").to_string().contains("was replaced")
+                belongs_to_another(&file, program_file.as_ref())
+                    .expect_err("exchanged")
+                    .to_string()
+                    .contains("was replaced")
             );
         }
     }

@@ -104,13 +104,14 @@ mod tests {
 
     #[test]
     fn many_scenes_that_run_into_a_limit_are_the_end_even_with_others_between() {
-        let known: Vec<_> = (0..30).map(|number| if number % 2 == 0 { LARGE } else { WRONG }).collect();
+        let verdicts_and_times: Vec<_> = (0..30).map(|number| if number % 2 == 0 { LARGE } else { WRONG }).collect();
         let limits = NotRunReason::Limits { scenes: 12, verdict: Verdict::MemoryLimit };
-        assert_eq!(find_first_skipped(&PATIENCE, false, &known), Some((23, limits)));
-        assert_eq!(find_first_skipped(&PATIENCE, false, &known[..22]), None);
-        assert_eq!(find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &known), None);
+        assert_eq!(find_first_skipped(&PATIENCE, false, &verdicts_and_times), Some((23, limits)));
+        assert_eq!(find_first_skipped(&PATIENCE, false, &verdicts_and_times[..22]), None);
+        assert_eq!(find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &verdicts_and_times), None);
         // Scenes without a verdict yet cannot move the end backward.
-        let later: Vec<_> = known.iter().enumerate().map(|(number, one)| one.filter(|_| number != 0)).collect();
+        let later: Vec<_> =
+            verdicts_and_times.iter().enumerate().map(|(number, one)| one.filter(|_| number != 0)).collect();
         assert_eq!(find_first_skipped(&PATIENCE, false, &later), Some((25, limits)));
     }
 

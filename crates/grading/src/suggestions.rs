@@ -11,16 +11,16 @@ pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Str
     find_closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
 }
 
-/// Returns the names that are most similar to a typed word, the most similar first, and at most `most`. Both the whole
-/// name and its last part are compared, because the group may be mistyped or missing.
-pub fn find_nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
+/// Returns the names that are most similar to a typed word, the most similar first, and at most `max_names`. Both the
+/// whole name and its last part are compared, because the group may be mistyped or missing.
+pub fn find_nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, max_names: usize) -> Vec<&'c str> {
     let last = |name: &str| normalize_word(name.rsplit('/').next().unwrap_or_default());
     let (typed, typed_last) = (normalize_word(word), last(word));
     let likeness = |name: &str| jaro_winkler(&typed, &normalize_word(name)).max(jaro_winkler(&typed_last, &last(name)));
     let mut near: Vec<(f64, &str)> = names.map(|name| (likeness(name), name)).collect();
     // The sort is stable, so names that are equally similar keep their order.
     near.sort_by(|(one, _), (other, _)| other.total_cmp(one));
-    near.into_iter().take(most).map(|(_, name)| name).collect()
+    near.into_iter().take(max_names).map(|(_, name)| name).collect()
 }
 
 /// Returns the letters and digits of a text, in lower case.

@@ -209,11 +209,11 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
         }
         (ValueKind::WholeNumber, DeValue::Integer(number)) if number.as_str().parse::<u32>().is_ok() => true,
         (ValueKind::Choice(words), DeValue::String(word)) => {
-            let known = words.contains(&word.as_ref());
-            if !known {
+            let is_choice = words.contains(&word.as_ref());
+            if !is_choice {
                 problems.push((at, describe_choices(name, word, words)));
             }
-            known
+            is_choice
         }
         (ValueKind::TextList, DeValue::Array(list)) => {
             let before = problems.len();

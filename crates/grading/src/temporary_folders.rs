@@ -29,8 +29,8 @@ impl TemporaryFolder {
     /// Creates a folder whose name begins with `purpose`.
     pub(super) fn create(purpose: &str) -> io::Result<Self> {
         let grader = GraderFolder::current()?;
-        let made = create_private(&format!("{purpose}-"), &grader.path)?;
-        let path = made.keep();
+        let folder = create_private(&format!("{purpose}-"), &grader.path)?;
+        let path = folder.keep();
         if purpose == "build" && is_root() {
             // Build tools use whole paths and run as another user, so the folder must be accessible. The entries in it
             // have restrictive permissions.
@@ -95,7 +95,7 @@ impl GraderFolder {
         for _ in 0..MAX_TRIES {
             let path = create_private(FOLDER_PREFIX, place)?.keep();
             let lock = path.join(LOCK_FILE);
-            let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
+            let lock_file = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
                 // Another grader's sweep may have removed the folder before it was locked.
                 let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
@@ -105,7 +105,7 @@ impl GraderFolder {
                     Err(io::ErrorKind::NotFound.into())
                 }
             });
-            match made {
+            match lock_file {
                 Ok(lock) => {
                     if is_root() {
                         // Programs run as other users. They must be able to reach their own folders, but must not list

@@ -29,11 +29,11 @@ fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     if names.is_empty() {
         return FolderContents::Nothing;
     }
-    let wanted = Path::new(program).file_name().unwrap_or_default();
+    let file_name = Path::new(program).file_name().unwrap_or_default();
     FolderContents::Others {
         names: names.iter().take(MAX_NAMED_ENTRIES).map(|name| format_entry(folder, name)).collect(),
         more: names.len().saturating_sub(MAX_NAMED_ENTRIES),
-        elsewhere: find_below(folder, wanted, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
+        elsewhere: find_below(folder, file_name, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
             .map(|path| file_names::to_printable(path.as_os_str())),
     }
 }

@@ -43,7 +43,7 @@ impl FileKind {
 
 /// Describes a file that begins with `start`, for messages.
 pub fn describe(start: &[u8]) -> String {
-    let known: [(&[u8], &str); 17] = [
+    let kinds_by_start: [(&[u8], &str); 17] = [
         (b"MZ", "a program for Windows"),
         (b"\xcf\xfa\xed\xfe", "a program for macOS"),
         (b"\xce\xfa\xed\xfe", "a program for macOS"),
@@ -62,7 +62,7 @@ pub fn describe(start: &[u8]) -> String {
         (b"PK\x05\x06", "an empty zip archive"),
         (b"SQLite", "a database"),
     ];
-    if let Some((_, what)) = known.iter().find(|(magic, _)| start.starts_with(magic)) {
+    if let Some((_, what)) = kinds_by_start.iter().find(|(magic, _)| start.starts_with(magic)) {
         return (*what).to_owned();
     }
     if start.is_empty() {

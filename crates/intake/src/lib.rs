@@ -137,7 +137,7 @@ pub fn is_system_file(name: &OsStr) -> bool {
 }
 
 /// The state while the entries of an archive are read.
-struct Walk<'a> {
+struct ArchiveReader<'a> {
     limits: ArchiveLimits,
     /// The folder into which the files are unpacked; `None` if the archive is only checked.
     folder: Option<&'a Path>,
@@ -150,7 +150,7 @@ struct Walk<'a> {
 
 fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
     let packed = file.metadata().map_err(ArchiveError::Read)?.len();
-    let mut walk = Walk {
+    let mut walk = ArchiveReader {
         limits: limits.for_size(packed),
         folder,
         entries: 0,
@@ -206,7 +206,7 @@ fn escape_name(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
 
-impl Walk<'_> {
+impl ArchiveReader<'_> {
     /// Reads all entries of an archive of any kind.
     fn walk_archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let start = read_start(&mut file).map_err(ArchiveError::Read)?;

@@ -118,7 +118,7 @@ mod tests {
         parity::Overall,
         replay::judge_with_memory,
         rules::{Book, Ruling},
-        samples::{change_trace, scene, simulate, write_frames},
+        samples::{changed_reference_trace, scene, simulate, write_frames},
     };
 
     /// Returns a scene in which a ball moves between two posts. Where the posts overlap the ball, each round of
@@ -136,7 +136,7 @@ mod tests {
 
     /// Returns a trace of `scene` in which every step except the first begins between the posts.
     fn squeezed(scene: &Scene) -> Vec<u8> {
-        change_trace(scene, |frames| {
+        changed_reference_trace(scene, |frames| {
             for frame in &mut frames[1..] {
                 frame.state.positions[..2].copy_from_slice(&[0.0, 0.0]);
                 frame.state.velocities[..2].copy_from_slice(&[1.0, 0.0]);

@@ -15,9 +15,9 @@ pub struct KeptTrace {
 }
 
 impl KeptTrace {
-    /// Creates a store for at most `most` bytes. A small number suits a trace that is not needed again.
-    pub const fn new(most: usize) -> Self {
-        Self { bytes: Vec::new(), max_bytes: most, has_ended: false, is_cut: false }
+    /// Creates a store for at most `max_bytes` bytes. A small number suits a trace that is not needed again.
+    pub const fn new(max_bytes: usize) -> Self {
+        Self { bytes: Vec::new(), max_bytes, has_ended: false, is_cut: false }
     }
 
     /// Returns a reader of the trace that keeps what it reads.

@@ -85,11 +85,11 @@ impl Observer for OverlapObserver<'_> {
             }
             PairMotion::Edge { center, ends, radii } => {
                 let [x1, x2, x3] = [center, ends[0], ends[1]].map(end);
-                let along = x3 - x2;
-                let alpha = ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
+                let edge_vector = x3 - x2;
+                let alpha = ((x1 - x2).dot(&edge_vector) / edge_vector.dot(&edge_vector)).clamp(0.0, 1.0);
                 let edge = &self.scene.edges[second];
                 let [v2, v3] = [edge.first, edge.second].map(|particle| vector_at(velocities, particle));
-                (Some(alpha), x2 + alpha * along - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
+                (Some(alpha), x2 + alpha * edge_vector - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
             }
             PairMotion::HalfPlane { center, radius, point, normal } => {
                 let out = (1.0 / length(normal)) * normal;

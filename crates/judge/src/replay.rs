@@ -13,7 +13,7 @@ pub use super::{
 
 use super::{
     budget::Budget,
-    fair::{self, Context, JudgementBuilder, Reach, Records, StepJudgement},
+    fair::{self, Context, ExtraordinarySteps, JudgementBuilder, Records, StepJudgement},
     finding::FindingDetail,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
@@ -132,7 +132,7 @@ struct Replay<'a, R> {
     state: State,
     steps_read: u32,
     /// The check for states that have no meaningful continuation, if the fair rules judge.
-    reach: Option<Reach<'a>>,
+    reach: Option<ExtraordinarySteps<'a>>,
     /// The remaining work of each rule book. The original's rules always judge. The work of one rule book is not
     /// subtracted from the other's.
     budgets: [Budget<'a>; 2],
@@ -230,7 +230,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             step_rules: StepRules { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
             steps_read: 0,
-            reach: fair.then(|| Reach::new(scene)),
+            reach: fair.then(|| ExtraordinarySteps::new(scene)),
             budgets: [false, true].map(|fair| Budget::new(scene, fair)),
             order: ContestOrder::new(scene),
             damage: None,
@@ -411,9 +411,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             has_judged &= reach.advance_to(step);
             slot.fair_judgement = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
-            let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgement));
+            let judgement = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgement));
             let identical = slot.result.is_identical;
-            let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.remaining());
+            let (mut judged, mut work) = reach.judge(context, records, identical, judgement, budget.remaining());
             if work > budget.remaining() && budget.extend() {
                 (judged, work) = reach.judge(context, records, identical, None, budget.remaining());
             }

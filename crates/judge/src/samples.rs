@@ -53,7 +53,7 @@ pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
 }
 
 /// Returns the reference trace with changed frames.
-pub(crate) fn change_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+pub(crate) fn changed_reference_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let mut frames = simulate(scene, ());
     change(&mut frames);
     write_frames(scene, &frames)

@@ -379,9 +379,9 @@ fn is_accepted(own: &[f64], actual: &[f64]) -> bool {
     if sum_own < PARITY_ZERO_COEFFICIENT_SUM {
         return sum_actual < PARITY_ZERO_COEFFICIENT_SUM;
     }
-    let alike =
+    let is_alike =
         |(own, actual): (&f64, &f64)| !((actual - (own * sum_actual) / sum_own).abs() > PARITY_COEFFICIENT_DIFFERENCE);
-    own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
+    own.iter().zip(actual).fold(true, |all, pair| all & is_alike(pair))
 }
 
 /// The result of quickly comparing a polynomial of the trace.

@@ -53,11 +53,11 @@ fn format_positional(digits: &str, exponent: i32) -> String {
         let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);
         return format!("0.{zeros}{digits}");
     }
-    let whole = exponent.unsigned_abs() as usize + 1;
-    if digits.len() <= whole {
-        format!("{digits:0<whole$}")
+    let integer_digits = exponent.unsigned_abs() as usize + 1;
+    if digits.len() <= integer_digits {
+        format!("{digits:0<integer_digits$}")
     } else {
-        format!("{}.{}", &digits[..whole], &digits[whole..])
+        format!("{}.{}", &digits[..integer_digits], &digits[integer_digits..])
     }
 }
 

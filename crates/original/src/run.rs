@@ -38,9 +38,9 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     if let Some(message) = find_unsupported(arguments, &scene.scene) {
         return print_error(message);
     }
-    let wanted = arguments.generate || arguments.movie.is_some();
-    let pictures =
-        wanted.then(|| outside.pictures(arguments.generate, arguments.movie.as_deref().map(Path::new), &scene.scene));
+    let draws_pictures = arguments.generate || arguments.movie.is_some();
+    let pictures = draws_pictures
+        .then(|| outside.pictures(arguments.generate, arguments.movie.as_deref().map(Path::new), &scene.scene));
     let task = match (&arguments.output, &arguments.input) {
         (Some(file), _) => Task::Record(file.as_bytes()),
         (None, Some(file)) => Task::Grade(file.as_bytes()),

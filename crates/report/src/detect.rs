@@ -47,14 +47,14 @@ pub(crate) type FormatFn = fn(f64) -> String;
 
 /// A detection call, as the report shows it.
 #[derive(Debug, Clone, Copy)]
-pub struct Detect<'a> {
+pub struct DetectReport<'a> {
     /// The reference's computation for the pair.
     pub study: &'a Study,
     /// The place in a scene's run at which the pair was examined; `None` if the user typed the numbers.
     pub place: Option<CallPlace<'a>>,
 }
 
-impl Detect<'_> {
+impl DetectReport<'_> {
     /// Returns one line that says what the report is about.
     pub fn title(&self) -> String {
         let Some(place) = &self.place else {
@@ -90,7 +90,7 @@ impl Detect<'_> {
     }
 
     /// Renders the report as text.
-    pub fn text(&self, style: Style) -> String {
+    pub fn render_text(&self, style: Style) -> String {
         let study = self.study;
         let mut text = style.paint(TextStyle::Strong, &self.title()) + "\n";
         if let Some(place) = &self.place {
@@ -455,7 +455,7 @@ view! {
     /// The decision that follows from a pair's polynomials.
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
-        /// The time intervals in which all polynomials are positive at once, sorted and disjoint.
+        /// The time intervals in which all polynomials are positive together, sorted and disjoint.
         positive: Vec<[WrittenNumber; 2]> = to_pairs(&answer.positive_intervals),
         /// Whether the pair collides in the step.
         collides: bool = answer.decision.collides(),

@@ -38,8 +38,9 @@ impl Diagnosis {
     }
 
     /// Renders the report as text.
-    pub fn text(&self, style: Style) -> String {
-        let smallest: String = self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, style))).collect();
+    pub fn render_text(&self, style: Style) -> String {
+        let smallest: String =
+            self.smallest.iter().map(|one| format!("\n{}", smallest::render_text(one, style))).collect();
         match &self.cases[..] {
             [] if smallest.is_empty() => return "No smaller scene shows the same fault.\n".to_owned(),
             [] => return smallest.trim_start().to_owned(),
@@ -61,17 +62,17 @@ impl Diagnosis {
         let mut likely = 0;
         for common in &self.common {
             let explained = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
-            let most = if common.is_not_finite() {
-                "Where numbers end"
+            let name = if common.is_not_finite() {
+                "First value that is not finite"
             } else {
                 likely += 1;
                 match (likely, common.is_unexplained()) {
                     (_, true) => "Most frequent fault",
                     (1, _) => "Likely cause of most",
-                    _ => "Likely cause of the other traces, or a second cause of the same ones",
+                    _ => "Another likely cause",
                 }
             };
-            let heading = format!("{most} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
+            let heading = format!("{name} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
             let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, &heading));
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
@@ -224,7 +225,7 @@ mod tests {
         };
         let cases = [("a", Some("no trace")), ("b", None), ("c", Some("no trace")), ("d", None)];
         let cases = cases.map(|(scene, note)| case(scene, note)).to_vec();
-        let text = Diagnosis { cases, ..Diagnosis::default() }.text(Style::Plain);
+        let text = Diagnosis { cases, ..Diagnosis::default() }.render_text(Style::Plain);
         assert_eq!(
             text,
             "2 of 4 traces are wrong by the fair rules.\n\nwrong  a and 1 more scene: no trace\nright  b\nright  d\n"

@@ -274,13 +274,13 @@ pub(crate) mod tests {
             Some("No simple mistake explains the polynomial: particle-edge overlap.")
         );
         assert_eq!((explanation_texts(&[], Style::Plain), render_sentence(&[])), (Vec::new(), None));
-        let known = |key: &str| {
+        let catalogued = |key: &str| {
             let key = key.to_owned();
             Explanation { key, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
         };
         let sentences = ["pp-no-two", "response-sign"].map(|key| find(key).expect("a row").sentence());
         assert_eq!(
-            render_sentence(&["pp-no-two", "response-sign"].map(known)),
+            render_sentence(&["pp-no-two", "response-sign"].map(catalogued)),
             Some(format!("likely mistakes: {}", sentences.join(" ")))
         );
     }

@@ -38,9 +38,9 @@ macro_rules! formats {
             }
 
             /// Renders the document like [`Format::render`], and lists the skipped entries in it.
-            pub fn render_class(self, grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+            pub fn render_class(self, grades: &[Grade], skipped: &[SkippedEntry]) -> String {
                 let render: fn(&[Grade], &[SkippedEntry]) -> String = match self { $(Self::$format => $render,)+ };
-                render(grades, passed_over)
+                render(grades, skipped)
             }
         }
     };
@@ -49,26 +49,26 @@ macro_rules! formats {
 formats! {
     /// Text for the terminal.
     Text "text" true
-        |grades, passed_over| {
-            Text::default().render(grades) + &list_not_graded(grades, class_entries(grades, passed_over), Style::Plain)
+        |grades, skipped| {
+            Text::default().render(grades) + &list_not_graded(grades, class_entries(grades, skipped), Style::Plain)
         };
     /// JSON in this program's own form, with a version (`schemas/grade.schema.json`).
-    Json "json" true |grades, passed_over| json::render(grades, class_entries(grades, passed_over));
+    Json "json" true |grades, skipped| json::render(grades, class_entries(grades, skipped));
     /// JUnit XML for continuous integration (`schemas/junit.xsd`).
-    Junit "junit" true |grades, passed_over| junit::render(grades, class_entries(grades, passed_over));
+    Junit "junit" true |grades, skipped| junit::render(grades, class_entries(grades, skipped));
     /// The file results.json for Gradescope (`schemas/gradescope.schema.json`).
     Gradescope "gradescope" false |grades, _| render_first(grades, gradescope::render);
     /// The file results.json for PrairieLearn (`schemas/prairielearn.schema.json`).
     Prairielearn "prairielearn" false |grades, _| render_first(grades, prairielearn::render);
     /// Annotations for GitHub Actions.
     Github "github" true
-        |grades, passed_over| {
-            github::render_annotations(grades) + &github::warn_of_skipped(class_entries(grades, passed_over))
+        |grades, skipped| {
+            github::render_annotations(grades) + &github::warn_of_skipped(class_entries(grades, skipped))
         };
     /// A table for spreadsheets with one row per scene.
     Markdown "markdown" true
-        |grades, passed_over| {
-            github::render_summary(grades) + &github::list_skipped(class_entries(grades, passed_over))
+        |grades, skipped| {
+            github::render_summary(grades) + &github::list_skipped(class_entries(grades, skipped))
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::render_scenes;
@@ -88,8 +88,8 @@ fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
 }
 
 /// Returns the skipped entries for a report on several submissions. A report on one submission does not list them.
-fn class_entries<'e>(grades: &[Grade], passed_over: &'e [SkippedEntry]) -> &'e [SkippedEntry] {
-    if grades.len() > 1 { passed_over } else { &[] }
+fn class_entries<'e>(grades: &[Grade], skipped: &'e [SkippedEntry]) -> &'e [SkippedEntry] {
+    if grades.len() > 1 { skipped } else { &[] }
 }
 
 impl Format {

@@ -67,8 +67,8 @@ pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
     // If the parts before the decimal point have different lengths, digits can't be compared.
-    let whole = |text: &str| text.find('.').unwrap_or(text.len());
-    let place = if whole(&texts.0) == whole(&texts.1) { common } else { 0 };
+    let integer_length = |text: &str| text.find('.').unwrap_or(text.len());
+    let place = if integer_length(&texts.0) == integer_length(&texts.1) { common } else { 0 };
     (texts.0, texts.1, parts.then_some(place))
 }
 
@@ -81,13 +81,13 @@ fn format_alike(expected: f64, actual: f64) -> Option<(String, String)> {
         return None;
     }
     let (top, gap) = (power(most)?, (expected - actual).abs());
-    let apart = if gap > 0.0 { power(gap)? } else { top };
+    let gap_power = if gap > 0.0 { power(gap)? } else { top };
     // Values of very different sizes can't be compared digit by digit.
     let least = expected.abs().min(actual.abs());
     if least > 0.0 && top - power(least)? > 4 {
         return None;
     }
-    let digits = (top - apart + 2).clamp(6, 17);
+    let digits = (top - gap_power + 2).clamp(6, 17);
     if (-4..9).contains(&top) {
         let decimals = usize::try_from(digits - 1 - top).unwrap_or(0);
         return Some((format!("{expected:.decimals$}"), format!("{actual:.decimals$}")));

@@ -30,7 +30,7 @@ pub struct SimulationSummary<'a> {
 
 impl SimulationSummary<'_> {
     /// Renders the report as text.
-    pub fn text(&self, style: Style) -> String {
+    pub fn render_text(&self, style: Style) -> String {
         let counts = &self.counts;
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
         table.row(["steps".into(), count(u64::from(self.steps)).into(), "".into()]);

@@ -20,7 +20,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 }
 
 /// Renders the report as text.
-pub fn text(small: &SmallestScene, style: Style) -> String {
+pub fn render_text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));
     let explanation_lines = explanation_texts(&explanations[..explanations.len().min(1)], style);

@@ -87,11 +87,12 @@ pub(super) fn restrict_at(path: &CStr, attributes: u64) -> io::Result<()> {
 }
 
 fn set_attributes(start: RawFd, path: &CStr, flags: u32, attributes: u64) -> io::Result<()> {
-    let wanted = MountAttributes { set: attributes, clear: 0, propagation: 0, user_namespace: 0 };
+    let attribute_request = MountAttributes { set: attributes, clear: 0, propagation: 0, user_namespace: 0 };
     let size = size_of::<MountAttributes>();
     // SAFETY: the path and the structure outlive the call, and the size is that of the structure.
-    let answer =
-        unsafe { libc::syscall(libc::SYS_mount_setattr, start, path.as_ptr(), flags, &raw const wanted, size) };
+    let answer = unsafe {
+        libc::syscall(libc::SYS_mount_setattr, start, path.as_ptr(), flags, &raw const attribute_request, size)
+    };
     check(answer).map(drop)
 }
 

@@ -68,8 +68,8 @@ fn list_modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
 /// runs, because `/usr/bin` alone may contain thousands of files.
 pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN_FILES: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
-    let mut known = KNOWN_FILES.lock().unwrap_or_else(PoisonError::into_inner);
-    known
+    let mut files_by_supervisor = KNOWN_FILES.lock().unwrap_or_else(PoisonError::into_inner);
+    files_by_supervisor
         .entry(supervisor.to_path_buf())
         .or_insert_with(|| list_files(&[Path::new(CURRENT_PROGRAM), supervisor]).into())
         .clone()
@@ -78,8 +78,8 @@ pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
 /// Returns the resolved paths of `programs`, of the grader's other programs next to them, and of the installed ones.
 fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
-    let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
-    let installed = PROGRAM_FOLDERS.into_iter().map(PathBuf::from).chain(beside);
+    let program_folders = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
+    let installed = PROGRAM_FOLDERS.into_iter().map(PathBuf::from).chain(program_folders);
     // Some of these files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| list_entries(folder));

@@ -238,7 +238,7 @@ pub(super) fn kill_namespace() -> bool {
 
 /// A process that has ended.
 pub(super) struct ReapedProcess {
-    /// The number of the process.
+    /// The ID of the process.
     pub(super) pid: i32,
     /// The raw wait status of the process.
     pub(super) status: i32,
@@ -290,8 +290,8 @@ pub(super) enum Readiness {
 /// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns the state of each
 /// descriptor.
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
-    let there = fds.iter().flatten();
-    let mut list: Vec<PollFd<'_>> = there.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
+    let open_fds = fds.iter().flatten();
+    let mut list: Vec<PollFd<'_>> = open_fds.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
     let time = Timespec { tv_sec: time.as_secs().cast_signed(), tv_nsec: time.subsec_nanos().into() };
     match rustix::event::poll(&mut list, Some(&time)) {
         Err(Errno::INTR) => return Ok([Readiness::Idle; N]),
@@ -405,9 +405,9 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
 
 /// A system call of the program that waits for a decision.
 pub(super) struct PendingCall {
-    /// The number of the announcement.
+    /// The ID of the notification (seccomp).
     pub(super) id: u64,
-    /// The number of the thread that made the call.
+    /// The ID of the thread that made the call.
     pub(super) thread: u32,
     /// The number of the system call.
     pub(super) call: i64,

@@ -38,7 +38,7 @@ pub fn step_starts(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scen
         set_steps(&mut scene, steps);
         Some(scene)
     };
-    let alone = wrong.iter().map(|&step| (step, from(step, 1)));
+    let single_steps = wrong.iter().map(|&step| (step, from(step, 1)));
     let longer = [(first, from(first - 1, 2)), (first, from(1, first))];
-    alone.chain(longer).filter_map(|(step, scene)| Some((step, scene?))).collect()
+    single_steps.chain(longer).filter_map(|(step, scene)| Some((step, scene?))).collect()
 }

@@ -170,9 +170,9 @@ fn apply_impulses(
             let current = state.clone();
             respond(world, contact, start, &current, state);
         } else if student.makes(Mistake::ImpulsesLastWins) {
-            let mut alone = before.clone();
-            respond(world, contact, start, &before, &mut alone);
-            *state = alone;
+            let mut changed = before.clone();
+            respond(world, contact, start, &before, &mut changed);
+            *state = changed;
         } else {
             respond(world, contact, start, &before, state);
         }

@@ -16,8 +16,8 @@ const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 60;
 
 /// Advances the state by one step without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
-    let whole = whole_step_term(world.scene.integrator);
-    if whole.is_some_and(|whole| world.student.makes_slip(whole, Slip::Missing)) {
+    let step_term = whole_step_term(world.scene.integrator);
+    if step_term.is_some_and(|step_term| world.student.makes_slip(step_term, Slip::Missing)) {
         return Ok(());
     }
     let before = (!world.student.makes_no_mistake()).then(|| state.clone());
@@ -39,8 +39,8 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         }
         Integrator::ImplicitEuler => step_implicit(world, state, solves)?,
     }
-    if let (Some(before), Some(whole)) = (before, whole) {
-        mishandle_fixed(world, whole, &before, state);
+    if let (Some(before), Some(step_term)) = (before, step_term) {
+        mishandle_fixed(world, step_term, &before, state);
     }
     Ok(())
 }

@@ -78,13 +78,17 @@ pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>
     write_trace(scene, student, StepLog::default())
 }
 
-/// Returns a trace like [`record_trace`], but a step with more than `most` polynomials fails. Without this
+/// Returns a trace like [`record_trace`], but a step with more than `max_polynomials` polynomials fails. Without this
 /// limit, the program may run forever.
 ///
 /// # Errors
 /// Returns the bytes written before the failing step, and the failure.
-pub fn record_limited_trace(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
-    let guard = |index: usize, _: &[f64]| index < most;
+pub fn record_limited_trace(
+    scene: &Scene,
+    student: Student,
+    max_polynomials: usize,
+) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+    let guard = |index: usize, _: &[f64]| index < max_polynomials;
     write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
 }
 

@@ -117,8 +117,8 @@ impl PairResponse<'_> {
         let impact =
             |particle: usize, velocity: Vec2| student.add_scaled(vector_at(self.q_start, particle), elapsed, velocity);
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
-        let along = y3 - y2;
-        let alpha = clamp(student.dot(y1 - y2, along) / student.dot(along, along));
+        let edge = y3 - y2;
+        let alpha = clamp(student.dot(y1 - y2, edge) / student.dot(edge, edge));
         let alpha = second_share(student, alpha);
         let beta = 1.0 - alpha;
         let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {

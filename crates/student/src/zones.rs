@@ -90,11 +90,11 @@ fn join(student: Student, zone: &mut Zone, other: Zone) {
 }
 
 fn merge_all(zones: Vec<Zone>) -> Vec<Zone> {
-    let whole = zones.into_iter().reduce(|mut whole, zone| {
-        join(Student::default(), &mut whole, zone);
-        whole
+    let merged = zones.into_iter().reduce(|mut merged, zone| {
+        join(Student::default(), &mut merged, zone);
+        merged
     });
-    whole.into_iter().collect()
+    merged.into_iter().collect()
 }
 
 /// Merges the zones with a union-find structure, in the order of their first particles.

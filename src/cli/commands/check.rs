@@ -76,7 +76,7 @@ fn write_report(
 ) -> Result<()> {
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match format {
-        CheckFormat::Text => check.text(style),
+        CheckFormat::Text => check.render_text(style),
         CheckFormat::Json => check.json(),
         CheckFormat::Github => check.github(),
         CheckFormat::Html => page::examined_page(check, examined, &evidence()),

@@ -12,8 +12,7 @@ use crate::{
     render::{detection, plot::PlotTarget},
     report::{
         describe::no_result,
-        detect::{CallPlace, Detect as Report, Overlap},
-        number::format_count,
+        detect::{CallPlace, DetectReport, Overlap},
         style::Style,
     },
     scene::Collision,
@@ -37,9 +36,9 @@ fn study_motion(motion: &PairMotion) -> Result<Study> {
 }
 
 fn show(arguments: &DetectArguments, study: &Study, place: Option<CallPlace<'_>>, inputs: &[Identity]) -> Result<()> {
-    let report = Report { study, place };
+    let report = DetectReport { study, place };
     write_output(arguments, inputs, |style| match arguments.format {
-        DetectFormat::Text => report.text(style),
+        DetectFormat::Text => report.render_text(style),
         DetectFormat::Json => report.json(),
         DetectFormat::Svg => detection::render_picture(study, &report.title(), PlotTarget::File),
     })
@@ -55,7 +54,7 @@ fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity])
     }
     write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Json => report.json(),
-        _ => report.text(style),
+        _ => report.render_text(style),
     })
 }
 
@@ -84,8 +83,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.step_count();
     if step == 0 || step > steps {
-        let steps = format_count(steps.into(), "step");
-        bail!("the scene {} has {steps}, counted from 1; there is no step {step}", scene.name);
+        bail!("there is no step {step}; the steps of the scene {} are 1 to {steps}", scene.name);
     }
     let pair = pair::find_pair(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();

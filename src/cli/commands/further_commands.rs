@@ -26,8 +26,8 @@ impl FurtherCommands<'_> {
         let mut lines = Vec::new();
         let of_trace = scene.verdict.is_wrong_trace();
         let hints = if self.plan.staff_hints < Hints::Full && of_trace { " --hints full" } else { "" };
-        let alone = self.plan.scenes().count() == 1;
-        if !alone || !hints.is_empty() {
+        let has_one_scene = self.plan.scenes().count() == 1;
+        if !has_one_scene || !hints.is_empty() {
             lines.push(format!("$ {} --scene {}{hints}", self.grade_command(submission), quote(&scene.scene)));
         }
         let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());

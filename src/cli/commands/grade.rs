@@ -3,7 +3,7 @@ use super::{
     display::{Counter, LiveDisplay},
     earlier_grades,
     further_commands::FurtherCommands,
-    grade_ending::{MAX_HARDEST, exit_code, scene_file_name, text, text_detail, to_file_name},
+    grade_ending::{MAX_HARDEST, exit_code, render_text, scene_file_name, text_detail, to_file_name},
     host::require_backend,
     last_run::LastRun,
     pages::{self, Pages},
@@ -95,15 +95,14 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     if arguments.output.is_none() && output.is_symlink() {
         bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
     }
-    let FoundSubmissions { mut submissions, skipped_entries: passed_over } =
-        Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let FoundSubmissions { mut submissions, skipped } = Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
     if let Some(sharding) = &sharding {
         sharding.begin()?;
         submissions = sharding.select_submissions(submissions);
         if submissions.is_empty() {
-            return sharding.end(&[], &passed_over).map(|()| exit::ACCEPTED);
+            return sharding.end(&[], &skipped).map(|()| exit::ACCEPTED);
         }
     }
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
@@ -119,7 +118,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let backend = require_backend(arguments.unsafe_no_sandbox)?;
     let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1 || sharding.is_some();
     let folder = keeps.then_some(output);
-    let whole = plan.scenes().count();
+    let scene_count = plan.scenes().count();
     let mut last_run = LastRun::open(folder.as_deref(), &submissions, &plan.name);
     let failed = match (arguments.failed, last_run.failed_scenes()) {
         (false, _) => None,
@@ -135,11 +134,11 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         console::print_error("nothing to run: everything was accepted in the last run\n");
         return Ok(exit::ACCEPTED);
     }
-    let is_part = plan.scenes().count() < whole || arguments.failed;
+    let is_part = plan.scenes().count() < scene_count || arguments.failed;
     let pages = find_requested_pages(arguments, folder.as_deref(), submissions.len() > 1, &reports)?;
     let (plan, backend, cancellation) = (&plan, &backend, &cancellation);
     let session =
-        GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, passed_over, times };
+        GradingSession { arguments, plan, backend, cancellation, folder, pages, is_part, sharding, skipped, times };
     if arguments.watch {
         return session.watch(&submissions, &reports, &mut last_run, earlier);
     }
@@ -159,7 +158,7 @@ struct GradingSession<'a> {
     /// The shard of this grading; `None` without `--shard`.
     sharding: Option<Sharding>,
     /// The skipped entries, which are not submissions.
-    passed_over: Vec<SkippedEntry>,
+    skipped: Vec<SkippedEntry>,
     /// The sums of the processor times of all runs, for `--timings`.
     times: &'a Timings,
 }
@@ -181,7 +180,7 @@ impl GradingSession<'_> {
             Some(fault) => Err(fault),
             None => {
                 if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_cancelled()) {
-                    sharding.end(&grades, &self.passed_over)?;
+                    sharding.end(&grades, &self.skipped)?;
                 }
                 let code = if self.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit_code(&grades) };
                 Ok((grades, code))
@@ -217,7 +216,7 @@ impl GradingSession<'_> {
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
-                Folder::create(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+                Folder::create(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
                 Some(FolderResults::open(folder, fresh)?)
             }
             None => None,
@@ -242,9 +241,9 @@ impl GradingSession<'_> {
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene| {
             let drawing = Drawing { hints: self.plan.staff_hints, has_pictures: self.pages.is_some() };
-            let (mut told, card) = shrink::describe(small, &program, &self.arguments.suite, drawing);
-            told.card = self.pages.as_ref().and_then(|pages| pages.store_card(card));
-            told
+            let (mut description, card) = shrink::describe(small, &program, &self.arguments.suite, drawing);
+            description.card = self.pages.as_ref().and_then(|pages| pages.store_card(card));
+            description
         };
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {
@@ -284,7 +283,7 @@ impl GradingSession<'_> {
         let BatchResult { mut grades, fault } =
             batch::grade_all(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
-        grade::add_warnings(&mut grades, self.passed_over());
+        grade::add_warnings(&mut grades, self.skipped_entries());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
@@ -301,29 +300,29 @@ impl GradingSession<'_> {
     }
 
     /// Returns the skipped entries. For a shard there are none, because `merge` reports them.
-    fn passed_over(&self) -> &[SkippedEntry] {
-        if self.sharding.is_some() { &[] } else { &self.passed_over }
+    fn skipped_entries(&self) -> &[SkippedEntry] {
+        if self.sharding.is_some() { &[] } else { &self.skipped }
     }
 
     /// Writes the reports, and the files in the output folder.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
-        let passed_over = self.passed_over();
+        let skipped = self.skipped_entries();
         let arguments = self.arguments;
         let (staff_page, published_page) = (arguments.staff_page.as_deref(), arguments.published_page.as_deref());
         let (platform_hides, is_part) = (arguments.platform_hides, self.is_part);
         let results =
-            Results { folder, pages, reader, platform_hides, staff_page, published_page, is_part, grades, passed_over };
-        results.write(reports, |grades| self.text(grades, submissions))
+            Results { folder, pages, reader, platform_hides, staff_page, published_page, is_part, grades, skipped };
+        results.write(reports, |grades| self.render_text(grades, submissions))
     }
 
     /// Renders the report for a terminal. For a class, it is a table and the result of the class.
-    fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
+    fn render_text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace_place(submission, scene).map(|place| place.path());
         let closer = FurtherCommands { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| closer.list_commands(grade, scene);
-        text(grades, self.passed_over(), shown, MAX_HARDEST, Some(&closer))
+        render_text(grades, self.skipped_entries(), shown, MAX_HARDEST, Some(&closer))
     }
 
     /// Grades again whenever a program changes, until the user interrupts it.

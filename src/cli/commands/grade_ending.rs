@@ -56,22 +56,22 @@ pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDe
     }
 }
 
-/// Renders the report for a terminal. If there are several submissions, it ends with the result of the class, at most
-/// `hardest` scenes and mistakes, and the skipped entries.
-pub(super) fn text(
+/// Renders the report for a terminal. For several submissions, it ends with a summary of the class (at most
+/// `max_hardest` scenes and mistakes) and a list of the skipped entries.
+pub(super) fn render_text(
     grades: &[Grade],
-    passed_over: &[SkippedEntry],
+    skipped_entries: &[SkippedEntry],
     shown: TextDetail,
-    hardest: usize,
+    max_hardest: usize,
     closer: Option<Advice<'_>>,
 ) -> String {
     let (style, width) = (console::style(), console::width());
     let mut text = Text { style, detail: shown, width, advice: closer }.render(grades);
     if grades.len() > 1 && shown > TextDetail::Line {
         text += "\n";
-        text += &grade::render_class(grades, hardest, style);
+        text += &grade::render_class(grades, max_hardest, style);
     }
-    text + &grade::list_not_graded(grades, passed_over, style)
+    text + &grade::list_not_graded(grades, skipped_entries, style)
 }
 
 #[cfg(test)]

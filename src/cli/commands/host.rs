@@ -132,7 +132,7 @@ fn write_sample(mistake: &str, program: &Path) -> Result<()> {
         &pinned_mistake::write(&bytes, mistake).context("there are too many mistakes for one program")?,
     )?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
-        .with_context(|| format!("cannot make {} executable", program.display()))
+        .with_context(|| format!("cannot set the execute permission of {}", program.display()))
 }
 
 pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {

@@ -1,6 +1,6 @@
 //! The command `merge`, which joins the shards of a grading.
 use super::{
-    grade_ending::{exit_code, text},
+    grade_ending::{exit_code, render_text},
     last_run::LastRun,
     pages::Pages,
     results::{Results, read_reports, reject_several},
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let (first, output) = require_complete(&parts, arguments)?;
     let names = &first.common.submissions;
     reject_several(&reports, names.len(), "")?;
-    Folder::create(&output).with_context(|| format!("cannot make {}", output.display()))?;
+    Folder::create(&output).with_context(|| format!("cannot create the folder {}", output.display()))?;
     // The lock is held until the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
@@ -57,13 +57,13 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
         }
         keep_results(folder, &kept)?;
     }
-    let (suite, passed_over) = (first.common.suite.clone(), first.passed_over.clone());
+    let (suite, skipped) = (first.common.suite.clone(), first.skipped_entries.clone());
     let order = names.clone();
     let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
     Grade::record_same_programs(&mut grades);
-    grade::add_warnings(&mut grades, &passed_over);
+    grade::add_warnings(&mut grades, &skipped);
     let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
     let reader = arguments.reader;
@@ -76,10 +76,10 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
         published_page: None,
         is_part: false,
         grades: &grades,
-        passed_over: &passed_over,
+        skipped: &skipped,
     };
     let shown = if arguments.quiet { TextDetail::Line } else { TextDetail::Table };
-    results.write(&reports, |grades| text(grades, &passed_over, shown, usize::MAX, None))?;
+    results.write(&reports, |grades| render_text(grades, &skipped, shown, usize::MAX, None))?;
     Ok(exit_code(&grades))
 }
 

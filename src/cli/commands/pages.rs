@@ -44,9 +44,9 @@ impl Pages {
         let (cards, temporary) = match folder {
             Some(folder) => (FilePlace::new(folder, "cards"), None),
             None => {
-                let made =
+                let temporary =
                     tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?;
-                (FilePlace::new(made.path(), ""), Some(made))
+                (FilePlace::new(temporary.path(), ""), Some(temporary))
             }
         };
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
@@ -86,7 +86,7 @@ impl Pages {
     pub(super) fn write(
         &self,
         grades: &[Grade],
-        passed_over: &[SkippedEntry],
+        skipped: &[SkippedEntry],
         reader: Audience,
     ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };
@@ -109,7 +109,7 @@ impl Pages {
         })?;
         // File names are already safe in a URL, except for blanks.
         let page = |grade: &Grade| format!("reports/{}.html", to_file_name(&grade.submission).replace(' ', "%20"));
-        write("index.html", &ClassPage { grades, passed_over, page: &page }.html())
+        write("index.html", &ClassPage { grades, skipped_entries: skipped, page: &page }.html())
     }
 }
 

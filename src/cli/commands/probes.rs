@@ -247,7 +247,7 @@ pub(super) fn report(
 ) -> Result<()> {
     let style = if target.is_some() { Style::Plain } else { console::style() };
     let text = match format {
-        ExplainFormat::Text => diagnosis.text(style),
+        ExplainFormat::Text => diagnosis.render_text(style),
         ExplainFormat::Json => diagnosis.json(),
         ExplainFormat::Html => ExplainedPage { diagnosis, cards }.html(),
     };

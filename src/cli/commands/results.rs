@@ -39,11 +39,11 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
             None => (word.as_str(), None),
         };
         let Some(format) = Format::from_name(name) else {
-            let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
+            let format_names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!(
                 "no format {name}; there are {}{}",
-                known.join(", "),
-                suggestions::suggest(name, known.iter().copied())
+                format_names.join(", "),
+                suggestions::suggest(name, format_names.iter().copied())
             );
         };
         reports.push(Report { format, name: name.to_owned(), file });
@@ -114,7 +114,7 @@ pub(super) struct Results<'a> {
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
     /// The skipped entries, which are not submissions.
-    pub(super) passed_over: &'a [SkippedEntry],
+    pub(super) skipped: &'a [SkippedEntry],
 }
 
 impl Results<'_> {
@@ -124,18 +124,18 @@ impl Results<'_> {
     ///
     /// Fails if a file can't be written. The other files are still written, and the first error is returned.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
-        let (grades, passed_over) = (self.grades, self.passed_over);
+        let (grades, skipped) = (self.grades, self.skipped);
         // If one file cannot be written, the other files are still written.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
             console::print_error("only a part was graded, so grades.csv and the other tables are not changed\n");
         } else if let Some(folder) = self.folder {
-            let by_submission = || grade::csv_of_submissions(grades, passed_over);
-            let by_scene = || Format::Csv.render_class(grades, passed_over);
-            let lines = || grade::json_lines(grades, passed_over);
+            let by_submission = || grade::csv_of_submissions(grades, skipped);
+            let by_scene = || Format::Csv.render_class(grades, skipped);
+            let lines = || grade::json_lines(grades, skipped);
             let class = || {
-                let missing = grade::list_not_graded(grades, passed_over, Style::Plain);
+                let missing = grade::list_not_graded(grades, skipped, Style::Plain);
                 wrap::wrap(&(grade::render_class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
             };
             let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
@@ -148,7 +148,7 @@ impl Results<'_> {
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
             let write_pages =
-                |pages: &Pages| catch_render_panic("the pages", || pages.write(grades, passed_over, self.reader));
+                |pages: &Pages| catch_render_panic("the pages", || pages.write(grades, skipped, self.reader));
             let (tables, first) = rayon::join(write_tables, || self.pages.map_or(Ok(Ok(None)), write_pages));
             tables.into_iter().for_each(&mut keep);
             keep(first.and_then(|first| first).map(|first| {
@@ -170,7 +170,7 @@ impl Results<'_> {
             let grades = visible_grades.as_ref();
             let render = || match (report.format, self.pages, grades) {
                 (Format::Html, Some(pages), [grade]) => pages.render_grade(grade, None, self.reader),
-                _ => report.format.render_class(grades, passed_over),
+                _ => report.format.render_class(grades, skipped),
             };
             match (&report.file, report.format) {
                 (None, Format::Text) => {

@@ -71,8 +71,8 @@ pub(super) struct ShardResult {
     /// The grades of the shard's submissions, in order.
     pub(super) grades: Vec<Grade>,
     /// The skipped entries of the class, which are not submissions.
-    #[serde(default)]
-    pub(super) passed_over: Vec<SkippedEntry>,
+    #[serde(rename = "passed_over", default)]
+    pub(super) skipped_entries: Vec<SkippedEntry>,
 }
 
 impl ShardResult {
@@ -167,7 +167,7 @@ impl Sharding {
     ///
     /// Fails if the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
-        self.shard_file.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
+        self.shard_file.make_folder().with_context(|| format!("cannot create the folder {}", self.folder.display()))?;
         let place = FilePlace::new(&self.folder, SHARD_FILE);
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
@@ -177,9 +177,9 @@ impl Sharding {
     /// # Errors
     ///
     /// Fails if the file can't be written.
-    pub(super) fn end(&self, grades: &[Grade], passed_over: &[SkippedEntry]) -> Result<()> {
-        let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
-        let part = ShardResult { common, number, grades: grades.to_vec(), passed_over };
+    pub(super) fn end(&self, grades: &[Grade], skipped_entries: &[SkippedEntry]) -> Result<()> {
+        let (common, number, skipped_entries) = (self.common.clone(), self.shard.number, skipped_entries.to_vec());
+        let part = ShardResult { common, number, grades: grades.to_vec(), skipped_entries };
         output::write_below(&FilePlace::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         console::print_remark(format!(

@@ -110,12 +110,12 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     command.build();
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
-            let known: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
-            let whole = command.get_bin_name().unwrap_or(PROGRAM_NAME);
-            if known.is_empty() {
-                bail!("{whole} has no subcommand `{name}`");
+            let subcommands: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
+            let full_name = command.get_bin_name().unwrap_or(PROGRAM_NAME);
+            if subcommands.is_empty() {
+                bail!("{full_name} has no subcommand `{name}`");
             }
-            bail!("{whole} has no command `{name}`; it has {}", known.join(", "));
+            bail!("{full_name} has no command `{name}`; it has {}", subcommands.join(", "));
         };
         command = found.clone();
     }

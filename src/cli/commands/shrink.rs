@@ -36,11 +36,11 @@ use std::{path::Path, time::Duration};
 pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
     let (own, suite) = (program.tasks(&[])?, program.suite_tasks());
-    let known = if arguments.suite.is_some() { [suite, own] } else { [own, suite] };
+    let task_lists = if arguments.suite.is_some() { [suite, own] } else { [own, suite] };
     // If the chosen scene belongs to the suite or the milestone, all of these scenes are examined, to find the likely
     // mistakes. A scene in a file is examined alone.
     let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
-    let named = known.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
+    let named = task_lists.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
     let mut tasks = match (named, &arguments.scene) {
         (None, Some(scene)) => named_tasks(std::slice::from_ref(scene))?,
         (named, _) => named.unwrap_or_default(),
@@ -147,10 +147,10 @@ pub(super) fn describe(
         small.difference = list_differences(scene, &seen.trace);
         if let (None, Some(DisclosedFinding::Full(Finding { step, detail, .. }))) = (&small.note, &small.first_finding)
         {
-            let alone =
+            let single_step =
                 step_starts(scene, &seen.trace, &[*step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
-            small.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, *step));
+            small.calculation = single_step.and_then(|(_, scene)| first_step(&scene, pair, *step));
         }
     }
     (small, card)

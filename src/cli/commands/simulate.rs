@@ -49,9 +49,9 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
         audit_counts: audited,
     };
     match (to_stdout, arguments.format) {
-        (true, TextOrJson::Text) => console::print_remark(summary.text(Style::Plain)),
+        (true, TextOrJson::Text) => console::print_remark(summary.render_text(Style::Plain)),
         (true, TextOrJson::Json) => console::print_remark(summary.json()),
-        (false, format) => console::show(format, || summary.text(console::style()), || summary.json())?,
+        (false, format) => console::show(format, || summary.render_text(console::style()), || summary.json())?,
     }
     if searches.disagreements > 0 {
         bail!("{} disagreements between certificates and the root finder; please report this", searches.disagreements);

@@ -30,7 +30,7 @@ const MAX_ENTRIES: usize = 100_000;
 /// The submissions that the command line names, and the skipped entries, which are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
-    pub(super) skipped_entries: Vec<SkippedEntry>,
+    pub(super) skipped: Vec<SkippedEntry>,
 }
 
 /// A submission, before its name is known.
@@ -66,7 +66,7 @@ impl<'a> Search<'a> {
     ///
     /// Fails if a path does not exist, or if a folder has no submissions.
     pub(super) fn run(&self) -> Result<FoundSubmissions> {
-        let (mut found, mut passed_over) = (Vec::new(), Vec::new());
+        let (mut found, mut skipped) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
             let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
             if !data.is_dir() {
@@ -75,11 +75,11 @@ impl<'a> Search<'a> {
             } else if self.arguments.single {
                 found.push(self.folder_entry(path));
             } else if self.arguments.programs.len() > 1 && self.is_results(path) {
-                skip_entry(&mut passed_over, path, RESULT_FOLDER_REASON);
+                skip_entry(&mut skipped, path, RESULT_FOLDER_REASON);
             } else if self.is_submission(path) {
                 found.push(self.folder_entry(path));
             } else {
-                match self.gather_entries(path, &mut found, &mut passed_over) {
+                match self.gather_entries(path, &mut found, &mut skipped) {
                     // An empty folder in a class must not stop the others. Its grade says what is missing.
                     Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder_entry(path)),
                     other => other?,
@@ -96,7 +96,7 @@ impl<'a> Search<'a> {
         let submissions = submissions
             .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
             .collect();
-        Ok(FoundSubmissions { submissions, skipped_entries: passed_over })
+        Ok(FoundSubmissions { submissions, skipped })
     }
 
     /// Returns the submission in a folder. If the suite builds submissions, the folder contains sources; otherwise a
@@ -133,7 +133,7 @@ impl<'a> Search<'a> {
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are skipped
     /// and reported. These are hidden entries, results of gradings, and links, which could lead to the submission of
     /// somebody else.
-    fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<SkippedEntry>) -> Result<()> {
+    fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, skipped: &mut Vec<SkippedEntry>) -> Result<()> {
         let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();
@@ -165,7 +165,7 @@ impl<'a> Search<'a> {
                 Ok(_) => "this is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
-            skip_entry(passed_over, path, &reason);
+            skip_entry(skipped, path, &reason);
         }
         if found.len() == before {
             bail!(
@@ -181,15 +181,15 @@ impl<'a> Search<'a> {
 }
 
 /// Returns the paths of the entries in a folder, in alphabetical order.
-fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
+fn list_entries(folder: &Path, max_entries: usize) -> Result<Vec<PathBuf>> {
     let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = listing
-        .take(most + 1)
+        .take(max_entries + 1)
         .map(|entry| entry.map(|entry| entry.path()))
         .collect::<Result<_, _>>()
         .with_context(|| format!("cannot read {}", folder.display()))?;
-    if paths.len() > most {
-        bail!("{} exceeds the limit of {most} entries: grade it in parts", folder.display());
+    if paths.len() > max_entries {
+        bail!("{} exceeds the limit of {max_entries} entries: grade it in parts", folder.display());
     }
     paths.sort();
     Ok(paths)
@@ -238,10 +238,10 @@ fn reject_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, reason: &str) {
+fn skip_entry(skipped: &mut Vec<SkippedEntry>, path: &Path, reason: &str) {
     let name = file_names::to_printable(path.file_name().unwrap_or(path.as_os_str()));
     console::print_error(format!("skipped {name}: {reason}\n"));
-    passed_over.push(SkippedEntry { name, reason: reason.to_owned() });
+    skipped.push(SkippedEntry { name, reason: reason.to_owned() });
 }
 
 /// Returns the last part of a path.
@@ -258,14 +258,14 @@ fn last_name(path: &Path) -> OsString {
 /// look the same, they get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
-    let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
+    let mut counts_by_printable: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
     for name in &own {
-        *alike.entry(file_names::to_printable(name)).or_default().entry(name).or_default() += 1;
+        *counts_by_printable.entry(file_names::to_printable(name)).or_default().entry(name).or_default() += 1;
     }
     let mut taken = BTreeSet::new();
     let mut name = |(path, own): (&&Path, &OsString)| {
         let shown = file_names::to_printable(own);
-        let plain = match &alike[&shown] {
+        let plain = match &counts_by_printable[&shown] {
             same if same[own.as_os_str()] > 1 => file_names::to_printable(find_unique_end(path, paths).as_os_str()),
             same if same.len() > 1 => file_names::to_exact(own),
             _ => shown,

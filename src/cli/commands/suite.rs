@@ -1,6 +1,6 @@
 //! The command `suite`, which writes, checks and explains suites.
 use super::{
-    suite_report::{SuiteContents, UndecidedScene, list, list_json, text},
+    suite_report::{SuiteContents, UndecidedScene, list, list_json, render_text},
     visible_mistakes::find_visible_mistakes,
 };
 use crate::{
@@ -32,7 +32,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
             let parts = if *mistakes { find_visible_mistakes(&plan) } else { Vec::new() };
             let contents =
                 SuiteContents { coverage: measure_coverage(&plan), lists_missing: *missing, visible_parts: parts };
-            console::report(&text(&plan, &contents, &find_undecided(&plan), console::style()))
+            console::report(&render_text(&plan, &contents, &find_undecided(&plan), console::style()))
         }
         SuiteCommand::List(SuiteListArguments { format }) => {
             let suites = list_built_in()?;
@@ -45,8 +45,8 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
 fn suite_template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::suite_template(&name).with_context(|| {
-        let known: Vec<_> = plan::built_in_names().collect();
-        format!("there is no built-in suite {name}; choose {}{}", known.join(", "), plan::suggest(&name))
+        let suite_names: Vec<_> = plan::built_in_names().collect();
+        format!("there is no built-in suite {name}; choose {}{}", suite_names.join(", "), plan::suggest(&name))
     })
 }
 

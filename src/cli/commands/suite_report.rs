@@ -39,7 +39,7 @@ pub(super) struct SuiteContents {
 }
 
 /// Renders the whole report. `undecided` has the scenes with decisions that round-off may change.
-pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
+pub(super) fn render_text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = render_head(plan, style);
     for group in &plan.groups {
         text += &describe_group(group, style);

@@ -64,5 +64,5 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
     }
     let labels = if step > 0 { collect_labels(&scene.scene, &before.state) } else { Vec::new() };
     let shown = ShownStep { step, steps, records: &records, labels: &labels };
-    console::show(arguments.format, || shown.text(console::style()), || shown.json(&scene.name, &trace.name))
+    console::show(arguments.format, || shown.render_text(console::style()), || shown.json(&scene.name, &trace.name))
 }

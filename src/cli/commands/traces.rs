@@ -2,7 +2,7 @@
 //! so no sandbox is needed. The duration of the run and its result are unknown.
 use super::{
     earlier_grades,
-    grade_ending::{MAX_HARDEST, exit_code, text, text_detail},
+    grade_ending::{MAX_HARDEST, exit_code, render_text, text_detail},
     pages::{self, Pages},
     results::{Report, Results, find_requested_pages, reject_several},
     submissions::distinct_names,
@@ -41,7 +41,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     reject_several(reports, arguments.programs.len(), "")?;
     let folder = arguments.output.as_deref();
     if let Some(output) = folder {
-        Folder::create(output).with_context(|| format!("cannot make {}", output.display()))?;
+        Folder::create(output).with_context(|| format!("cannot create the folder {}", output.display()))?;
     }
     let pages = find_requested_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
@@ -65,9 +65,11 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
         published_page,
         is_part,
         grades: &grades,
-        passed_over: &[],
+        skipped: &[],
     };
-    results.write(reports, |grades| text(grades, &[], text_detail(arguments, grades.len() > 1), MAX_HARDEST, None))?;
+    results.write(reports, |grades| {
+        render_text(grades, &[], text_detail(arguments, grades.len() > 1), MAX_HARDEST, None)
+    })?;
     Ok(exit_code(&grades))
 }
 
@@ -77,8 +79,8 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
     // With any number of threads, the results are in the order of the plan.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
-    let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
-    traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
+    let (results, warnings): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
+    traces::grade(plan, submission, results, warnings.into_iter().flatten().collect())
 }
 
 /// The maximum number of traces that a warning names.
@@ -124,7 +126,7 @@ fn judge_scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages
 }
 
 fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
-    let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
+    let (trace, warning) = read(folder, &task.name, plan.limits.trace)?;
     let (mut result, examined) = traces::judge_trace(plan, task, &trace[..], &mut ());
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.difference_cause.is_none())
@@ -144,27 +146,27 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
         (result.card, result.card_for_students) =
             pages.new_cards(&draw).store_cards(&judged, plan.student_hints(&task.name))?;
     }
-    Ok((result, passed_over))
+    Ok((result, warning))
 }
 
 /// Reads the trace of a scene. The file has the scene's full name or its name without the group, and may be compressed.
 /// If there is no usable trace, the warning says what is there instead: something that is not a file, a damaged file,
-/// or a link, which may lead to the trace of somebody else. At most `most` bytes are read; a longer trace is cut, and
-/// is therefore a bad trace.
-fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
-    let mut passed_over = None;
+/// or a link, which may lead to the trace of somebody else. At most `max_bytes` bytes are read; a longer trace is cut,
+/// and is therefore a bad trace.
+fn read(folder: &Folder, scene: &str, max_bytes: u64) -> io::Result<(Vec<u8>, Option<String>)> {
+    let mut warning = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
     let names = ["bin", "bin.zst", "bin.gz"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
     for name in names.into_iter().flatten() {
         match folder.open_file(OsStr::new(&name), u64::MAX) {
-            Ok((file, _)) => match unpack(file, most)? {
+            Ok((file, _)) => match unpack(file, max_bytes)? {
                 Ok(trace) => return Ok((trace, None)),
-                Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is skipped: {why}"))),
+                Err(why) => warning = warning.or_else(|| Some(format!("{name} is skipped: {why}"))),
             },
             Err(FileError::Missing { .. }) => {}
             Err(FileError::System { source, .. }) => return Err(source),
-            Err(error) => passed_over = passed_over.or_else(|| Some(format!("a trace was skipped: {error}"))),
+            Err(error) => warning = warning.or_else(|| Some(format!("a trace was skipped: {error}"))),
         }
     }
-    Ok((Vec::new(), passed_over))
+    Ok((Vec::new(), warning))
 }

@@ -41,11 +41,11 @@ fn describe_missing_asset(what: &str, name: &str) -> String {
 
 /// Returns the error for a file that does not exist. If an embedded file has this name, the message suggests `asset:`.
 fn suggest_asset(name: &Path, error: io::Error) -> anyhow::Error {
-    let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
-    match known
-        .filter(|known| error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *known))
-    {
-        Some(known) => anyhow::anyhow!("there is no such file; the built-in scene is asset:{known}"),
+    let built_in = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
+    match built_in.filter(|built_in| {
+        error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *built_in)
+    }) {
+        Some(built_in) => anyhow::anyhow!("there is no such file; the built-in scene is asset:{built_in}"),
         None => error.into(),
     }
 }

@@ -62,7 +62,10 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
         if (index as usize) < count {
             return Ok(index);
         }
-        bail!("there is no {what} {index}; the scene has {count}, counted from 0")
+        match count.checked_sub(1) {
+            Some(last) => bail!("there is no {what} {index}; the scene's last {what} is {last}"),
+            None => bail!("there is no {what} {index}; the scene has none"),
+        }
     };
     let first = index(first, scene.particles.len(), "particle")?;
     let count = match kind {

@@ -165,18 +165,18 @@ fn open_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) 
     Ok(Box::new(Cursor::new(start).chain(reader)))
 }
 
-/// Returns at most `most` bytes of a trace that may be compressed. If its zstd data can't be decompressed, returns the
-/// reason.
+/// Returns at most `max_bytes` bytes of a trace that may be compressed. If its zstd data can't be decompressed, returns
+/// the reason.
 ///
 /// # Errors
 ///
 /// Fails if the file can't be read.
-pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
+pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, max_bytes: u64) -> io::Result<Result<Vec<u8>, String>> {
     let failure = Failure::default();
     let mut bytes = Vec::new();
     let read = open_packed(Box::new(file), false, &failure)
         .map_err(io::Error::other)
-        .and_then(|reader| reader.take(most).read_to_end(&mut bytes));
+        .and_then(|reader| reader.take(max_bytes).read_to_end(&mut bytes));
     match (read, failure.get()) {
         (_, Some(why)) => Ok(Err(why)),
         (Err(error), None) => Err(error),

@@ -79,8 +79,8 @@ fn type_name(line: &str) -> Option<&str> {
 }
 
 /// Returns the items that are longer than allowed.
-fn too_long(found: BTreeMap<String, usize>, most: usize) -> Vec<String> {
-    found.into_iter().filter(|(_, length)| *length > most).map(|(name, n)| format!("{name}: {n}")).collect()
+fn too_long(found: BTreeMap<String, usize>, max_length: usize) -> Vec<String> {
+    found.into_iter().filter(|(_, length)| *length > max_length).map(|(name, n)| format!("{name}: {n}")).collect()
 }
 
 /// Returns whether a file is the root of a program, a library, a test or a benchmark.

@@ -65,7 +65,7 @@ pub enum StageFault {
         all: bool,
     },
     /// The number of impulse rounds is wrong.
-    Rounds(WrongNumber),
+    Rounds(RoundCountError),
     /// The impulse rounds are right, but the values after them are wrong.
     HandedOver {
         /// The quantity that is wrong; `None` if both positions and velocities are.
@@ -241,7 +241,7 @@ pub enum Quantity {
 fosssim_num::closed_set! {
     /// An error in the number of rounds.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-    pub enum WrongNumber {
+    pub enum RoundCountError {
         /// The loop makes too few rounds.
         Fewer = "the loop makes fewer rounds than it should",
         /// The loop makes too many rounds.

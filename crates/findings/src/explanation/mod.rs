@@ -15,7 +15,7 @@ pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitu
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
     ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity,
-    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+    RoundCountError, StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongPositions,
     WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};

@@ -94,8 +94,8 @@ pub fn suite_names() -> impl Iterator<Item = String> {
 
 /// Returns the end of a message about an unknown suite, as [`suggestions::suggest`] does.
 pub fn suggest(name: &str) -> String {
-    let known: Vec<String> = suite_names().collect();
-    suggestions::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
+    let suites: Vec<String> = suite_names().collect();
+    suggestions::suggest(name, suites.iter().filter_map(|suites| suites.split('@').next()))
 }
 
 /// Returns the name of the default suite.

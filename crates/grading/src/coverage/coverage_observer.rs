@@ -209,8 +209,8 @@ impl Observer for CoverageObserver<'_> {
                 if matches!(self.stage, Stage::Geometric { .. }) {
                     self.step.zone_contacts.insert(detection.pair);
                 }
-                let of = |company| self.contact_event(detection, &bodies, time, company);
-                let both = [Company::Alone, Company::Several].map(of);
+                let contact_with = |company| self.contact_event(detection, &bodies, time, company);
+                let both = [Company::Alone, Company::Several].map(contact_with);
                 self.step.contacts.push((bodies, both));
             }
             Decision::Miss { .. } => {
@@ -233,8 +233,9 @@ impl Observer for CoverageObserver<'_> {
     }
 
     fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
-        let known = |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
-        self.step.previous_zones = std::mem::replace(&mut self.step.zones, zones.iter().map(known).collect());
+        let zone_members =
+            |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
+        self.step.previous_zones = std::mem::replace(&mut self.step.zones, zones.iter().map(zone_members).collect());
     }
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {

@@ -44,14 +44,15 @@ fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
 /// Fails if there is no such suite. If the suite is invalid, the error contains all problems.
 pub fn find_suite(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
-    let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let suite_folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let loaded = match find_built_in_suite(name) {
         Some(text) => load_suite(text, Path::new(".")),
         None => {
             let text = read_text(path, MAX_SUITE_BYTES).map_err(|why| match why.kind() {
                 io::ErrorKind::NotFound => {
-                    let known = built_in_names().collect::<Vec<_>>().join(", ");
-                    format!("there is no suite {name}: it is neither a file nor one of {known}{}", suggest(name)).into()
+                    let suite_names = built_in_names().collect::<Vec<_>>().join(", ");
+                    format!("there is no suite {name}: it is neither a file nor one of {suite_names}{}", suggest(name))
+                        .into()
                 }
                 _ => FindError { message: format!("cannot read the suite {name}"), cause: Some(why) },
             })?;
@@ -59,7 +60,7 @@ pub fn find_suite(name: &str) -> Result<Plan, FindError> {
                 let advice = "a group of a suite lists it in its `scenes`";
                 return Err(format!("{name} is a scene, not a suite: {advice}").into());
             }
-            load_suite(&text, beside)
+            load_suite(&text, suite_folder)
         }
     };
     loaded.map_err(|error| describe_errors(name, &error).into())

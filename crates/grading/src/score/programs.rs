@@ -34,11 +34,13 @@ impl SubmissionGrading<'_> {
         let (plan, options) = (self.grader.plan, self.grader.options);
         // Discards scenes that ran in parallel with the one at which grading stopped. Otherwise the grade would depend
         // on the number of jobs.
-        let known: Vec<_> = results
+        let verdicts_and_times: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
             .collect();
-        if let Some((end, why)) = skipped_scenes::find_first_skipped(&plan.skip_limits, options.fail_fast, &known) {
+        if let Some((end, why)) =
+            skipped_scenes::find_first_skipped(&plan.skip_limits, options.fail_fast, &verdicts_and_times)
+        {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
                 *result = (skipped_scenes::skipped_result(scene, why), false);
             }

@@ -105,7 +105,7 @@ mod tests {
 
     /// Returns the reference trace with changed frames.
     fn changed_trace(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-        samples::change_trace(&samples::scene(BOUNCE_SCENE), change)
+        samples::changed_reference_trace(&samples::scene(BOUNCE_SCENE), change)
     }
 
     /// Multiplies every coefficient.

@@ -227,9 +227,9 @@ fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) ->
     let mut logged = [0.0; MAX_COEFFICIENTS];
     right[MAX_COEFFICIENTS - expected.len()..].copy_from_slice(expected);
     logged[MAX_COEFFICIENTS - actual.len()..].copy_from_slice(actual);
-    let whole = (degree + 1).min(MAX_COEFFICIENTS);
-    let (right, logged) = (&right[MAX_COEFFICIENTS - whole..], &logged[MAX_COEFFICIENTS - whole..]);
-    let missing = whole.saturating_sub(actual.len());
+    let length = (degree + 1).min(MAX_COEFFICIENTS);
+    let (right, logged) = (&right[MAX_COEFFICIENTS - length..], &logged[MAX_COEFFICIENTS - length..]);
+    let missing = length.saturating_sub(actual.len());
     if !right.iter().all(|r| r.value.is_finite() && r.bound.is_finite()) {
         return check_non_finite_positions(|r| r.value.is_finite(), right, logged);
     }
@@ -275,7 +275,7 @@ fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) ->
         }
     }
     // A factor on which at most one coefficient agrees proves nothing.
-    if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
+    if best.0 + 1 >= length && length > 1 { matched(1.0) } else { best.1 }
 }
 
 /// Compares a logged polynomial with the factor 1, and returns the mismatch, if there is one.
@@ -399,8 +399,8 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
     if max_factor(dropped) >= 1.0 || shows_factor(expected, actual) {
         return None;
     }
-    let known = held.iter().find(|r| is_significant(r))?;
-    let room = UNIT_ROUNDOFF * allowed_units(known, bound_sum(expected)) / known.value.abs();
+    let significant = held.iter().find(|r| is_significant(r))?;
+    let room = UNIT_ROUNDOFF * allowed_units(significant, bound_sum(expected)) / significant.value.abs();
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 

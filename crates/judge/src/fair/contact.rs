@@ -199,8 +199,8 @@ impl<'a> Tolerances<'a> {
     }
 
     fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
-        let known = self.sensitivity.map_or(0.0, |known| length(vector_at(of(known), particle)));
-        floor + FAIR_SENSITIVITY_FACTOR * known
+        let sensitivity = self.sensitivity.map_or(0.0, |sensitivity| length(vector_at(of(sensitivity), particle)));
+        floor + FAIR_SENSITIVITY_FACTOR * sensitivity
     }
 }
 
@@ -244,11 +244,11 @@ pub(super) fn compare_states(
 /// Returns the distance between two vectors. If the reference itself has NaN or infinity from the trace's own state, a
 /// trace with the same value is right: the component counts as equal. If only one side has NaN, the result is NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
-    let apart = |expected: f64, actual: f64| {
+    let subtract = |expected: f64, actual: f64| {
         let same = expected == actual || expected.is_nan() && actual.is_nan();
         if same { 0.0 } else { expected - actual }
     };
-    length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
+    length(Vec2::new(subtract(expected.x, actual.x), subtract(expected.y, actual.y)))
 }
 
 /// Returns a logged collision as a decision, or `None` if no response can be computed from the collision.

@@ -5,7 +5,7 @@ use fosssim_num::tolerances::FAIR_OUTLIER_DEVIATIONS;
 /// The factors that polynomials of one kind of pair and one number show: the smallest factor, the largest, and the
 /// distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Factors {
+pub struct FactorStatistics {
     least: f64,
     greatest: f64,
     /// The factor that was added last.
@@ -17,15 +17,15 @@ pub struct Factors {
 }
 
 /// The factors of all kinds of pairs and numbers of polynomials.
-pub type FactorsByPolynomial = PairKindMap<[Factors; PairKind::MAX_POLYNOMIALS]>;
+pub type FactorsByPolynomial = PairKindMap<[FactorStatistics; PairKind::MAX_POLYNOMIALS]>;
 
-impl Default for Factors {
+impl Default for FactorStatistics {
     fn default() -> Self {
         Self { least: f64::INFINITY, greatest: f64::NEG_INFINITY, last: 1.0, count: 0, exponents: 0, squares: 0 }
     }
 }
 
-impl Factors {
+impl FactorStatistics {
     /// Adds a positive, finite factor.
     #[inline]
     pub(super) fn add_factor(&mut self, factor: f64) {
@@ -95,8 +95,8 @@ fn power_of_two(power: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn factors_from(factors: impl IntoIterator<Item = f64>) -> Factors {
-        let mut all = Factors::default();
+    fn factors_from(factors: impl IntoIterator<Item = f64>) -> FactorStatistics {
+        let mut all = FactorStatistics::default();
         factors.into_iter().for_each(|factor| all.add_factor(factor));
         all
     }
@@ -124,14 +124,14 @@ mod tests {
         for factor in [5e-324, 1e-300, 1.0, 1e300, f64::MAX] {
             assert_eq!(factors_from([factor; 9]).usual_range(), Some([factor; 2]));
         }
-        assert_eq!(Factors::default().usual_range(), None);
+        assert_eq!(FactorStatistics::default().usual_range(), None);
     }
 
     #[test]
     fn two_steps_tell_what_one_tells() {
         let (mut one, all) = (factors_from([1.0, 5.0]), factors_from([1.0, 5.0, 0.25, 1e-7]));
         one.add(&factors_from([0.25, 1e-7]));
-        one.add(&Factors::default());
+        one.add(&FactorStatistics::default());
         assert_eq!(one, all);
     }
 }

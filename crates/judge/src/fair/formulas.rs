@@ -243,8 +243,8 @@ impl BoundedPairMotion {
             return Vec2::new(normal.x.value, normal.y.value);
         };
         let [x1, x2, x3] = [0, 1, 2].map(|way| place(&ways[way]));
-        let along = x3 - x2;
-        x2 + ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along - x1
+        let edge = x3 - x2;
+        x2 + ((x1 - x2).dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0) * edge - x1
     }
 
     /// Returns the contact normal at time `t`, not normalized.

@@ -1,6 +1,6 @@
 //! Builds the fair verdict on one trace.
 use super::{
-    factors::{Factors, FactorsByPolynomial},
+    factors::{FactorStatistics, FactorsByPolynomial},
     pending_polynomials::{PendingCause, PendingPolynomials},
     step_judgement::StepJudgement,
 };
@@ -119,8 +119,8 @@ impl JudgementBuilder {
     }
 
     /// Returns the factors of all polynomials of a kind so far.
-    fn factors_of(&self, kind: PairKind) -> Factors {
-        let mut all = Factors::default();
+    fn factors_of(&self, kind: PairKind) -> FactorStatistics {
+        let mut all = FactorStatistics::default();
         for (factors, same) in self.factors[kind].iter().zip(self.identical_polynomials[kind]) {
             all.add(factors);
             all.add_ones(same);
@@ -193,7 +193,7 @@ impl JudgementBuilder {
         };
         self.judgement.refusal = refusal;
         self.count_wrong_pending();
-        let factors = self.factors.values().flatten().filter_map(Factors::range);
+        let factors = self.factors.values().flatten().filter_map(FactorStatistics::range);
         let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
         let mut judgement = self.judgement;
         judgement.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));

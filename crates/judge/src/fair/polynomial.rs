@@ -183,8 +183,9 @@ impl StepJudgement {
             let detail = wrong_polynomial_finding(logged, expected, mismatch);
             Finding { step: self.step, frame: self.frame, detail }
         };
-        let is_like = |known: &PendingPolynomials| (known.place, known.form, known.cause) == (place, form, cause);
-        let Some(known) = self.pending.iter().position(is_like) else {
+        let is_like =
+            |pending: &PendingPolynomials| (pending.place, pending.form, pending.cause) == (place, form, cause);
+        let Some(pending) = self.pending.iter().position(is_like) else {
             let finding = finding();
             let (least, most) = ((least, finding), (most, finding));
             self.pending.push(PendingPolynomials {
@@ -197,16 +198,16 @@ impl StepJudgement {
             });
             return;
         };
-        let PendingPolynomials { least_factor: (of_all, _), greatest_factor: (to_all, _), .. } = self.pending[known];
+        let PendingPolynomials { least_factor: (of_all, _), greatest_factor: (to_all, _), .. } = self.pending[pending];
         let new = (least > of_all || most < to_all).then(finding);
-        let known = &mut self.pending[known];
-        known.count += 1;
+        let pending = &mut self.pending[pending];
+        pending.count += 1;
         if let Some(new) = new {
             if least > of_all {
-                known.least_factor = (least, new);
+                pending.least_factor = (least, new);
             }
             if most < to_all {
-                known.greatest_factor = (most, new);
+                pending.greatest_factor = (most, new);
             }
         }
     }

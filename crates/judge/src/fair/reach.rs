@@ -19,7 +19,7 @@ use fosssim_num::vector::vector_at;
 /// Compares states with the reference's own run, which is simulated only up to the needed step, and not at all for
 /// ordinary states.
 #[derive(Debug)]
-pub(crate) struct Reach<'a> {
+pub(crate) struct ExtraordinarySteps<'a> {
     scene: &'a Scene,
     range: OrdinaryRange,
     run: Option<ReferenceRun>,
@@ -36,22 +36,22 @@ struct ReferenceRun {
     is_lost: bool,
 }
 
-impl<'a> Reach<'a> {
+impl<'a> ExtraordinarySteps<'a> {
     /// Creates the comparison for traces of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, range: OrdinaryRange::for_scene(scene), run: None, second_simulation: None }
     }
 
-    /// Judges a step with an extraordinary state. `known` is its judgement, if it starts from ordinary states;
-    /// otherwise it is judged only if the reference reaches such states. Steps must be passed in order. Also returns
-    /// the work. The simulation stops soon after it exceeds `most_work`.
+    /// Judges a step with an extraordinary state. `known` is the judgement of a step that starts from ordinary states.
+    /// A step that starts from an extraordinary state is judged only if the reference reaches such states too. Steps
+    /// must be passed in order. Also returns the work. The simulation stops soon after it exceeds `max_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
         records: Records<'_>,
         identical: bool,
         known: Option<StepJudgement>,
-        most_work: u64,
+        max_work: u64,
     ) -> (StepJudgement, u64) {
         self.run_to(records.step);
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
@@ -64,7 +64,7 @@ impl<'a> Reach<'a> {
                 let simulation =
                     self.second_simulation.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
                 let begin = simulation.work();
-                simulation.limit_work(begin.saturating_add(most_work));
+                simulation.limit_work(begin.saturating_add(max_work));
                 let judged = judge(context, simulation, records, identical);
                 (judged, simulation.work() - begin)
             }

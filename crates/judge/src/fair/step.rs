@@ -105,8 +105,9 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
     let count = mid.polynomials.len();
     let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
-    let whole = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
-    let same = whole && (0..count).all(|index| has_same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
+    let is_complete = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
+    let same =
+        is_complete && (0..count).all(|index| has_same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
     if !same {
         charge(FindingDetail::RecordsDiffer { part: RecordPart::Polynomials });
     }

@@ -2,7 +2,7 @@
 mod ways;
 
 use super::*;
-use crate::{finding::FindingKind, rules::Ruling, samples::change_trace};
+use crate::{finding::FindingKind, rules::Ruling, samples::changed_reference_trace};
 use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
 use fosssim_num::vector::Vec2;
 
@@ -26,7 +26,7 @@ fn a_batch_counts_all_lists() {
     let scene = Scene { duration: 100.0, ..scene };
     let impulse = LoggedImpulse { kind: 2, first: 0, second: 0, normal: Vec2::zeros(), time: 0.5 };
     for (impulses, polynomials) in [(40_000, 0), (0, 200_000)] {
-        let trace = change_trace(&scene, |frames| {
+        let trace = changed_reference_trace(&scene, |frames| {
             for frame in &mut frames[1..21] {
                 frame.impulses = vec![impulse; impulses];
                 (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
@@ -45,7 +45,7 @@ fn a_batch_counts_all_lists() {
 fn a_crowd_of_contacts_is_judged() {
     let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
     let of = |second| LoggedImpulse { kind: 9, first: 0, second, normal: Vec2::zeros(), time: 0.5 };
-    let trace = change_trace(&scene, |frames| {
+    let trace = changed_reference_trace(&scene, |frames| {
         for frame in &mut frames[1..3] {
             frame.impulses.extend((0..500_000).map(of).chain([of(7), of(7)]));
         }
@@ -93,7 +93,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
 #[test]
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
     let scene = crate::samples::scene(crate::samples::ZONES_SCENE);
-    let trace = change_trace(&scene, |frames| {
+    let trace = changed_reference_trace(&scene, |frames| {
         let layout = Layout::for_scene(&scene);
         frames[usize::try_from(layout.end_record(1)).expect("small")].state.positions[4] = f64::NAN;
     });

@@ -97,8 +97,8 @@ fn describe_wrong_coefficient(
     let factor = find_factor(own, logged);
     // If only the original's bound rejects a coefficient, its power is the original's.
     let power = find_differing_powers(own, logged, factor).first().copied().unwrap_or(rescaled.power);
-    let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
-    let (right, wrong) = (factor * of(own), of(logged));
+    let coefficient_at = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
+    let (right, wrong) = (factor * coefficient_at(own), coefficient_at(logged));
     FindingDetail::Coefficient {
         place,
         power,

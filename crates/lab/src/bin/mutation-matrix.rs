@@ -180,8 +180,8 @@ fn sufficient_scenes(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<Ma
     let all = union(&(0..scenes).collect());
     let mut chosen = BTreeSet::new();
     while union(&chosen) != all {
-        let known = union(&chosen);
-        let best = (0..scenes).rev().max_by_key(|&scene| caught[scene].difference(&known).count());
+        let caught_mistakes = union(&chosen);
+        let best = (0..scenes).rev().max_by_key(|&scene| caught[scene].difference(&caught_mistakes).count());
         chosen.extend(best);
     }
     for scene in chosen.clone() {

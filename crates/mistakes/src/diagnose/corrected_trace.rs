@@ -124,8 +124,8 @@ mod tests {
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
         let of_first = correct_trace(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed_count, of_first.explanations.len()), (1, 1));
-        let told = &of_first.explanations[0];
-        assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
+        let explanation = &of_first.explanations[0];
+        assert_eq!((explanation.key.as_str(), explanation.reproduced, explanation.samples), ("loop-one-fewer", 2, 2));
         // A trace that they do not explain keeps its own explanations.
         assert_eq!(
             correct_trace(std::slice::from_ref(&other), &likely, &[]),

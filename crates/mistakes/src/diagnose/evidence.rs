@@ -176,9 +176,9 @@ pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let is_likely =
         |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.reported.is_some() || is_known(word));
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
-        let known = is_known(word).cmp(&is_known(other));
+        let by_known = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
-        a.weight().cmp(&b.weight()).then(known).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
+        a.weight().cmp(&b.weight()).then(by_known).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
     })?;
     // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {

@@ -25,8 +25,8 @@ pub use explain::{explain, explain_kept_trace};
 pub use fosssim_findings::explanation::{
     Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
     ExamplePlace, ExampleValue, Explanation, ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue,
-    PairCounts, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
-    StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    PairCounts, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError, StageDetail,
+    StageFault, StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion,
     WrongPairs, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{fault, guess, topic};

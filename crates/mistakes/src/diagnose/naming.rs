@@ -49,15 +49,15 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     }
     // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake or a
     // general guess.
-    let made = one.claims_by_subject().into_values().map(|claims| {
+    let words_by_subject = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {
             let is_of_all = find(guess).is_some() || claim.ends_with('/');
             if is_of_all { guess } else { claim }
         });
         words.map(str::to_owned).collect::<BTreeSet<String>>()
     });
-    let made = made.reduce(|one, other| one.intersection(&other).cloned().collect());
-    all.extend(made.into_iter().flatten().map(|word| (word, true)));
+    let words_by_subject = words_by_subject.reduce(|one, other| one.intersection(&other).cloned().collect());
+    all.extend(words_by_subject.into_iter().flatten().map(|word| (word, true)));
     all
 }
 

@@ -95,7 +95,7 @@ pub struct Definition {
     /// The assignment's name in the course.
     pub title: &'static str,
     /// The collision types that the assignment adds, and the handling of each.
-    pub handlings: &'static [Handling],
+    pub handlings: &'static [CollisionHandling],
     /// The kinds of pairs whose polynomials its detections log, in the order of a pass; [`PairKind::polynomial_count`]
     /// is the number of polynomials of each.
     pub pairs: &'static [PairKind],
@@ -129,7 +129,7 @@ const COMMON: Definition = Definition {
 
 impl Definition {
     /// Returns the assignment's handling of a collision type, or `None` if another assignment adds the type.
-    pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
+    pub fn handling(&self, collision: CollisionType) -> Option<&CollisionHandling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
     }
 }
@@ -167,9 +167,9 @@ const LIBRARY: Library = Library {
     has_contest: false,
 };
 
-/// The tasks of a program for a collision type.
+/// How a program handles a collision type.
 #[derive(Debug)]
-pub struct Handling {
+pub struct CollisionHandling {
     /// The collision type.
     pub collision: CollisionType,
     /// The lists in the program's records.

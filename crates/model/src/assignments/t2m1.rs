@@ -1,5 +1,7 @@
 //! Theme 2, Milestone 1: collisions at the end of a step, and the penalty force (collisions.md 6, simulation.md 3).
-use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, LIBRARY, Library, PairKind, Part, RecordLists};
+use super::{
+    COMMON, CollisionHandling, CollisionType, Definition, ImpulseList, LIBRARY, Library, PairKind, Part, RecordLists,
+};
 
 /// The rules of the assignment. No detection logs polynomials, because the course's root finder comes with the next
 /// milestone.
@@ -7,12 +9,12 @@ pub(super) const DEFINITION: Definition = Definition {
     key: "t2m1",
     title: "Theme 2, Milestone 1",
     handlings: &[
-        Handling {
+        CollisionHandling {
             collision: CollisionType::Simple,
             records: RecordLists { impulses: ImpulseList::Responses, has_polynomials: false },
             heading: "Simple Collision Handling",
         },
-        Handling {
+        CollisionHandling {
             collision: CollisionType::Penalty,
             records: RecordLists { impulses: ImpulseList::Absent, has_polynomials: false },
             heading: "Collisions disabled",

@@ -1,16 +1,16 @@
 //! Theme 2, Milestone 2 (trace-format.md 2, collisions.md).
-use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, PairKind, Part, RecordLists};
+use super::{COMMON, CollisionHandling, CollisionType, Definition, ImpulseList, PairKind, Part, RecordLists};
 
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m2",
     title: "Theme 2, Milestone 2",
     handlings: &[
-        Handling {
+        CollisionHandling {
             collision: CollisionType::ContinuousTime,
             records: RecordLists { impulses: ImpulseList::Responses, has_polynomials: true },
             heading: "Continuous-Time Collision Handling",
         },
-        Handling {
+        CollisionHandling {
             collision: CollisionType::Hybrid,
             records: RecordLists { impulses: ImpulseList::Empty, has_polynomials: true },
             heading: "Hybrid Collision Handling",

@@ -1,6 +1,6 @@
 //! Theme 1: particles, forces and integrators. Its milestones add forces and integrators, not collision types.
 use super::{
-    COMMON, CollisionType, Definition, ForceKind, Handling, ImpulseList, Integrator, LIBRARY, Library, Part,
+    COMMON, CollisionHandling, CollisionType, Definition, ForceKind, ImpulseList, Integrator, LIBRARY, Library, Part,
     RecordLists,
 };
 
@@ -8,7 +8,7 @@ use super::{
 pub(super) const MILESTONE_1: Definition = Definition {
     key: "t1m1",
     title: "Theme 1, Milestone 1",
-    handlings: &[Handling {
+    handlings: &[CollisionHandling {
         collision: CollisionType::None,
         records: RecordLists { impulses: ImpulseList::Absent, has_polynomials: false },
         heading: "Collisions disabled",

@@ -254,10 +254,10 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
         if number == edge.first || number == edge.second || start == end {
             continue;
         }
-        let along = end - start;
+        let edge_vector = end - start;
         // The position on the edge is computed as in the penalty force, including its limits.
-        let alpha = ((particle.position - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
-        let on_it = (start + alpha * along) - particle.position == Vec2::zeros();
+        let alpha = ((particle.position - start).dot(&edge_vector) / edge_vector.dot(&edge_vector)).clamp(0.0, 1.0);
+        let on_it = (start + alpha * edge_vector) - particle.position == Vec2::zeros();
         let at_end = particle.position == start || particle.position == end;
         let all_fixed = particle.fixed && fixed(edge.first) && fixed(edge.second);
         if on_it && !at_end && !all_fixed && rule.touches(particle.radius + edge.radius) {

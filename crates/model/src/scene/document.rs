@@ -267,8 +267,8 @@ impl<'t> DocumentReader<'t, '_> {
         let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
         // The maximum depth of nesting. Without a limit, a file of wrong closing tags would take too long.
         const MAX_DEPTH: usize = 64;
-        let known = self.open_elements.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
-        match (known, self.open_elements.last()) {
+        let elements_above = self.open_elements.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
+        match (elements_above, self.open_elements.last()) {
             (Some(0), _) => {}
             (Some(above), Some(last)) => {
                 self.document.is_broken = true;

@@ -1,5 +1,5 @@
 //! The scene for the simulator, as plain values. Every index is valid if the strict reader read the scene.
-use crate::assignments::{Assignment, CollisionType, Handling, Integrator};
+use crate::assignments::{Assignment, CollisionHandling, CollisionType, Integrator};
 use fosssim_num::vector::Vec2;
 
 /// A scene: the bodies, the duration, the integrator and the collision handling.
@@ -108,7 +108,7 @@ impl Collision {
     ///
     /// # Panics
     /// Never panics: a test checks that every type is handled by its assignment.
-    pub fn handling(&self) -> &'static Handling {
+    pub fn handling(&self) -> &'static CollisionHandling {
         let kind = self.kind();
         Assignment::for_collisions(kind).definition().handling(kind).expect("an assignment handles its collision types")
     }

@@ -88,10 +88,10 @@ fn number_length(text: &str) -> usize {
 /// Returns the offsets at which a number's sign, digits and fraction end, or `None` if there are no digits.
 pub(super) fn mantissa_end(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
-    let whole = count_digits(text, sign);
-    let point = sign + whole;
+    let integer_digits = count_digits(text, sign);
+    let point = sign + integer_digits;
     let fraction = if text.get(point) == Some(&b'.') { 1 + count_digits(text, point + 1) } else { 0 };
-    (whole > 0 || fraction > 1).then_some(point + fraction)
+    (integer_digits > 0 || fraction > 1).then_some(point + fraction)
 }
 
 /// Returns the number of digits at `from`.

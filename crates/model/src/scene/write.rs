@@ -54,10 +54,10 @@ pub fn write(scene: &Scene) -> String {
 fn particle_element(particle: &Particle) -> Element {
     let moves = Element::new("particle").vector("px", "py", particle.position).vector("vx", "vy", particle.velocity);
     let fixed = moves.number("m", particle.mass).with_attribute("fixed", u8::from(particle.fixed));
-    let whole = fixed.number("radius", particle.radius);
+    let element = fixed.number("radius", particle.radius);
     match &particle.tag {
-        Some(tag) => whole.text("tag", tag),
-        None => whole,
+        Some(tag) => element.text("tag", tag),
+        None => element,
     }
 }
 

@@ -110,8 +110,8 @@ impl Simulation {
 
     /// Sets the maximum [`Simulation::work`]. The detection pass or iteration that exceeds it ends its step with
     /// [`StepError::Work`].
-    pub fn limit_work(&mut self, most: u64) {
-        self.max_work = most;
+    pub fn limit_work(&mut self, max_work: u64) {
+        self.max_work = max_work;
     }
 }
 

@@ -17,13 +17,13 @@ use std::io::Read;
 crate::drops_leading!();
 
 /// The memory of a decoded polynomial in addition to its coefficients, in bytes.
-const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
+const POLYNOMIAL_OVERHEAD_BYTES: usize = size_of::<usize>();
 
 /// The number of polynomials for which memory is reserved at a time.
 const RESERVED_POLYNOMIALS: usize = 64;
 
 /// The memory of a decoded impulse, in bytes.
-pub(crate) const IMPULSE_MEMORY: usize = size_of::<LoggedImpulse>();
+pub(crate) const IMPULSE_MEMORY_BYTES: usize = size_of::<LoggedImpulse>();
 
 #[inline]
 fn decode_number(bytes: &[u8]) -> f64 {
@@ -40,12 +40,12 @@ pub(crate) fn decode_numbers<R: Read>(source: &mut Source<R>, count: usize, out:
     out.clear();
     while out.len() < count {
         let wanted = (8 * (count - out.len())).min(WINDOW_BYTES);
-        let whole = source.ensure(wanted).min(wanted) / 8 * 8;
-        if whole == 0 {
+        let available = source.ensure(wanted).min(wanted) / 8 * 8;
+        if available == 0 {
             return false;
         }
-        out.extend(source.window()[..whole].chunks_exact(8).map(decode_number));
-        source.consume(whole);
+        out.extend(source.window()[..available].chunks_exact(8).map(decode_number));
+        source.consume(available);
     }
     true
 }
@@ -59,8 +59,8 @@ pub(crate) fn decode_state<R: Read>(source: &mut Source<R>, particles: usize, st
 /// Appends up to `count` impulses from the window, and returns their number; 0 only at the end of the source.
 pub(crate) fn decode_impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<LoggedImpulse>) -> usize {
     let wanted = count.min(WINDOW_BYTES / IMPULSE_BYTES) * IMPULSE_BYTES;
-    let whole = source.ensure(wanted).min(wanted) / IMPULSE_BYTES;
-    let bytes = &source.window()[..whole * IMPULSE_BYTES];
+    let available = source.ensure(wanted).min(wanted) / IMPULSE_BYTES;
+    let bytes = &source.window()[..available * IMPULSE_BYTES];
     out.extend(bytes.chunks_exact(IMPULSE_BYTES).map(|b| LoggedImpulse {
         kind: decode_integer(&b[0..4]),
         first: decode_integer(&b[4..8]),
@@ -68,21 +68,21 @@ pub(crate) fn decode_impulses<R: Read>(source: &mut Source<R>, count: usize, out
         normal: Vec2::new(decode_number(&b[12..20]), decode_number(&b[20..28])),
         time: decode_number(&b[28..36]),
     }));
-    source.consume(whole * IMPULSE_BYTES);
-    whole
+    source.consume(available * IMPULSE_BYTES);
+    available
 }
 
-/// Returns the size of an ordinary polynomial (0 to 6 coefficients, completely in `bytes`), and the bytes after its
+/// Returns the size of a short polynomial (at most 6 coefficients, completely in `bytes`), and the bytes after its
 /// size.
 #[inline(always)]
-fn decode_ordinary_size(bytes: &[u8]) -> Option<(usize, &[u8])> {
+fn decode_short_size(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;
     let size = u32::from_le_bytes(*head) as usize;
     (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
 }
 
-/// Returns whether the next polynomial is ordinary and completely in the window.
-pub(crate) fn has_ordinary_polynomial<R: Read>(source: &mut Source<R>) -> bool {
+/// Returns whether the next polynomial has at most six coefficients and is completely in the window.
+pub(crate) fn has_short_polynomial<R: Read>(source: &mut Source<R>) -> bool {
     if source.ensure(4) < 4 {
         return false;
     }
@@ -90,22 +90,22 @@ pub(crate) fn has_ordinary_polynomial<R: Read>(source: &mut Source<R>) -> bool {
         .is_ok_and(|size| size <= MAX_COEFFICIENTS && source.ensure(4 + 8 * size) >= 4 + 8 * size)
 }
 
-/// Appends ordinary polynomials until the first other one, at most `most`. Returns the number of bytes used, the number
-/// of polynomials, and, with `TRIM`, whether any leading coefficient was dropped.
+/// Appends short polynomials (at most six coefficients) until the first longer one, at most `max_count`. Returns the
+/// number of bytes used, the number of polynomials, and, with `TRIM`, whether any leading coefficient was dropped.
 pub(crate) fn decode_polynomials<const TRIM: bool>(
     bytes: &[u8],
-    most: u64,
+    max_count: u64,
     log: &mut PolynomialLog,
 ) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
     let PolynomialLog { coefficients, coefficient_ends: ends } = log;
     let mut used = coefficients.len();
-    while done < most
-        && let Some((size, rest)) = decode_ordinary_size(&bytes[at..])
+    while done < max_count
+        && let Some((size, rest)) = decode_short_size(&bytes[at..])
     {
         // A copy of constant length, of which a part counts, is fastest; memory is reserved for many at a time.
         if coefficients.len() < used + MAX_COEFFICIENTS {
-            let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(RESERVED_POLYNOMIALS);
+            let more = usize::try_from(max_count - done).unwrap_or(usize::MAX).min(RESERVED_POLYNOMIALS);
             coefficients.resize(used + more * MAX_COEFFICIENTS, 0.0);
         }
         let places = &mut coefficients[used..used + MAX_COEFFICIENTS];
@@ -130,11 +130,11 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
     (at, done, trimmed)
 }
 
-/// Skips ordinary polynomials, and returns the same as [`decode_polynomials`]; nothing is dropped.
-pub(crate) fn skip_ordinary_polynomials(bytes: &[u8], most: u64) -> (usize, u64, bool) {
+/// Skips short polynomials, and returns the same as [`decode_polynomials`]; nothing is dropped.
+pub(crate) fn skip_short_polynomials(bytes: &[u8], max_count: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
-    while done < most
-        && let Some((size, _)) = decode_ordinary_size(&bytes[at..])
+    while done < max_count
+        && let Some((size, _)) = decode_short_size(&bytes[at..])
     {
         at += 4 + 8 * size;
         done += 1;
@@ -144,5 +144,5 @@ pub(crate) fn skip_ordinary_polynomials(bytes: &[u8], most: u64) -> (usize, u64,
 
 /// Returns the memory of the log's content, in bytes.
 pub(crate) fn memory_bytes(log: &PolynomialLog) -> usize {
-    8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.coefficient_ends.len()
+    8 * log.coefficients.len() + POLYNOMIAL_OVERHEAD_BYTES * log.coefficient_ends.len()
 }

@@ -96,8 +96,8 @@ impl TryFrom<ImpulseForm> for LoggedImpulse {
     type Error = &'static str;
 
     fn try_from(ImpulseForm { pair, normal, time }: ImpulseForm) -> Result<Self, Self::Error> {
-        let known = PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind).map(PairKind::code);
-        let kind = known.or(pair.code).ok_or("unknown kind of pair")?;
+        let code = PairKind::ALL.into_iter().find(|kind| kind.name() == pair.kind).map(PairKind::code);
+        let kind = code.or(pair.code).ok_or("unknown kind of pair")?;
         let [first, second] =
             [pair.first, pair.second].map(|index| i32::try_from(index).map_err(|_| "the index is out of range"));
         Ok(Self { kind, first: first?, second: second?, normal, time })

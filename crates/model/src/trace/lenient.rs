@@ -32,7 +32,7 @@ const MAX_RECORD_BYTES: usize = 256 * 1024 * 1024;
 const MIN_RECORD_BYTES: usize = 32 * 1024 * 1024;
 
 /// The memory of the longest polynomial that a detection logs, in bytes.
-const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::<usize>();
+const MAX_POLYNOMIAL_BYTES: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::<usize>();
 
 /// The maximum number of coefficients that are kept of a polynomial. Every number above [`MAX_COEFFICIENTS`] is equally
 /// wrong.
@@ -46,7 +46,9 @@ pub fn record_memory(scene: &Scene) -> usize {
     let of_edges = particles.saturating_mul(4 * scene.edges.len());
     let of_half_planes = particles.saturating_mul(2 * scene.half_planes.len());
     let pass = of_particles.saturating_add(of_edges).saturating_add(of_half_planes);
-    pass.saturating_mul(max_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)
+    pass.saturating_mul(max_passes(scene))
+        .saturating_mul(MAX_POLYNOMIAL_BYTES)
+        .clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)
 }
 
 /// Returns the maximum number of detection passes in a step.
@@ -105,7 +107,7 @@ impl LenientFrame {
         /// The size up to which memory is kept, in bytes. With a lower size, ordinary records would be allocated again
         /// and again.
         const MAX_REUSED_BYTES: usize = 4 << 20;
-        if decode::IMPULSE_MEMORY * self.impulses.capacity() > MAX_REUSED_BYTES {
+        if decode::IMPULSE_MEMORY_BYTES * self.impulses.capacity() > MAX_REUSED_BYTES {
             self.impulses = Vec::new();
         }
         let log = &self.polynomials;
@@ -291,10 +293,10 @@ impl<R: Read> LenientReader<R> {
     /// Reads into `value`; if bytes are missing, the high-order bytes stay unchanged.
     fn read_bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
         if !self.has_failed {
-            let there = self.source.ensure(N).min(N);
-            value[..there].copy_from_slice(&self.source.window()[..there]);
-            self.source.consume(there);
-            self.has_failed = there < N;
+            let available = self.source.ensure(N).min(N);
+            value[..available].copy_from_slice(&self.source.window()[..available]);
+            self.source.consume(available);
+            self.has_failed = available < N;
         }
     }
 
@@ -307,13 +309,13 @@ impl<R: Read> LenientReader<R> {
 
     fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         // The original took the previous record for complete, although the bytes ended in it.
-        let whole = self.record - u64::from(self.has_failed && self.record > 0);
+        let complete_records = self.record - u64::from(self.has_failed && self.record > 0);
         self.has_failed = self.has_failed || !decode::decode_state(&mut self.source, self.layout.particles, state);
         if !self.has_failed {
             return Ok(());
         }
         let left = self.source.offset() - self.record_start + self.source.ensure(1) as u64;
-        let what = Malformation::missing_state(self.layout, self.record, whole, left);
+        let what = Malformation::missing_state(self.layout, self.record, complete_records, left);
         Err(self.stop(ReadFailure::State, self.record_start, what))
     }
 
@@ -333,7 +335,7 @@ impl<R: Read> LenientReader<R> {
         }
         let entries = usize::try_from(count).unwrap_or(0);
         while impulses.len() < entries {
-            if impulses.len() * decode::IMPULSE_MEMORY > self.limit {
+            if impulses.len() * decode::IMPULSE_MEMORY_BYTES > self.limit {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(ReadFailure::Limit, offset, what));
             }
@@ -360,23 +362,23 @@ impl<R: Read> LenientReader<R> {
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
         while done < entries && !self.has_failed {
-            let (window, most) = (self.source.window(), entries - done);
-            let (used, ordinary, trimmed) = if self.is_full(frame) {
-                decode::skip_ordinary_polynomials(window, most)
+            let (window, max_count) = (self.source.window(), entries - done);
+            let (used, decoded_count, trimmed) = if self.is_full(frame) {
+                decode::skip_short_polynomials(window, max_count)
             } else if self.is_strict {
-                decode::decode_polynomials::<false>(window, most, &mut frame.polynomials)
+                decode::decode_polynomials::<false>(window, max_count, &mut frame.polynomials)
             } else {
-                decode::decode_polynomials::<true>(window, most, &mut frame.polynomials)
+                decode::decode_polynomials::<true>(window, max_count, &mut frame.polynomials)
             };
             self.source.consume(used);
             self.check_memory(frame, offset)?;
             frame.is_unchanged &= !trimmed;
-            done += ordinary;
+            done += decoded_count;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(ReadFailure::Memory, offset, what));
             }
-            if done < entries && !decode::has_ordinary_polynomial(&mut self.source) {
+            if done < entries && !decode::has_short_polynomial(&mut self.source) {
                 self.read_polynomial(frame, done, count)?;
                 done += 1;
             }
@@ -413,11 +415,12 @@ impl<R: Read> LenientReader<R> {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
             return Err(self.stop(ReadFailure::Memory, offset, what));
         }
-        let whole = !self.has_failed;
+        let is_complete = !self.has_failed;
         let begin = self.source.offset();
         let keeps = !self.is_full(frame);
         let start = frame.polynomials.coefficients.len();
-        let most = if self.is_strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
+        let max_length =
+            if self.is_strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
         let mut is_leading = !self.is_strict;
         // The bytes of each coefficient that were read, as the original keeps them.
         let mut value = [0; 8];
@@ -436,7 +439,7 @@ impl<R: Read> LenientReader<R> {
             let times = if self.has_failed { size - read } else { 1 };
             if !is_leading {
                 let log = &mut frame.polynomials;
-                log.coefficients.resize((log.coefficients.len() + times).min(most), coefficient);
+                log.coefficients.resize((log.coefficients.len() + times).min(max_length), coefficient);
             }
             if self.has_failed {
                 break;
@@ -446,7 +449,7 @@ impl<R: Read> LenientReader<R> {
             frame.polynomials.coefficient_ends.push(frame.polynomials.coefficients.len());
         }
         frame.is_unchanged &= !self.has_failed && written >= 0;
-        if whole && self.has_failed {
+        if is_complete && self.has_failed {
             let left = self.source.offset() - begin;
             self.record_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }

@@ -94,11 +94,11 @@ impl<R: Read> Source<R> {
     pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
         let mut drained = 0;
         loop {
-            let there = self.ensure(1);
-            if there == 0 {
+            let available = self.ensure(1);
+            if available == 0 {
                 return Some(drained);
             }
-            let step = there.min(usize::try_from(limit - drained).unwrap_or(usize::MAX));
+            let step = available.min(usize::try_from(limit - drained).unwrap_or(usize::MAX));
             if step == 0 {
                 return None;
             }
@@ -125,8 +125,8 @@ impl<R: Read> Source<R> {
         self.end -= self.start;
         self.start = 0;
         while self.end < wanted && !self.has_ended {
-            let there = self.offset + self.end as u64;
-            let allowed = self.length.map_or(u64::MAX, |length| length.saturating_sub(there));
+            let read = self.offset + self.end as u64;
+            let allowed = self.length.map_or(u64::MAX, |length| length.saturating_sub(read));
             let room = (self.buffer.len() - self.end).min(usize::try_from(allowed).unwrap_or(usize::MAX));
             if room == 0 {
                 self.has_ended = true;

@@ -48,10 +48,10 @@ pub const MAX_POLYNOMIALS: usize = 4;
 /// The largest reported margin, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
 pub const MAX_MARGIN: f64 = 9_007_199_254_740_992.0;
 
-/// The maximum number of powers of two over which coefficients may spread for [`decide`] to use integers if there are
-/// errors. It is enough for the fifth powers of displacements of `1e-20` next to distances of 1. A larger number makes
-/// hostile input slower.
-const MAX_SPREAD: u64 = 400;
+/// The largest difference between the binary exponents of two coefficients for which [`decide`] uses integers if there
+/// are errors. It is enough for the fifth powers of displacements of `1e-20` next to distances of 1. A larger number
+/// makes hostile input slower.
+const MAX_EXPONENT_SPREAD: u64 = 400;
 
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -134,7 +134,7 @@ pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision 
     match (outer.answer, inner.answer) {
         (_, Answer::Reached(time)) => hit_decision([from, time], units + lower.hit_slack(time), Level::Subdivision),
         (Answer::Reached(first), Answer::Never) => borderline_decision(Some([from, first]), Level::Subdivision),
-        (outer, _) if upper.exponent_spread().max(lower.exponent_spread()) > MAX_SPREAD => {
+        (outer, _) if upper.exponent_spread().max(lower.exponent_spread()) > MAX_EXPONENT_SPREAD => {
             let to = if let Answer::Reached(first) = outer { first } else { 1.0 };
             borderline_decision(Some([from, to]), Level::Subdivision)
         }

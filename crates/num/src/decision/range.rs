@@ -130,8 +130,7 @@ impl Problem {
         })
     }
 
-    /// Returns the maximum number of powers of two over which the sizes of one polynomial's coefficients spread; zeros
-    /// do not count.
+    /// Returns the largest difference between the binary exponents of two nonzero coefficients of one polynomial.
     pub(crate) fn exponent_spread(&self) -> u64 {
         let spread = |polynomial: &ExactPolynomial| {
             let exponents =

@@ -73,7 +73,7 @@ impl ResidualPlot<'_> {
 
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
-        let of = |Series { name, values }: &Series<'_>| {
+        let describe_series = |Series { name, values }: &Series<'_>| {
             let (place, value) = find_worst(values, 0..values.len())?;
             // A NaN is not below the tolerance.
             let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
@@ -83,7 +83,7 @@ impl ResidualPlot<'_> {
                 place + 1
             ))
         };
-        self.series.iter().filter_map(of).collect::<Vec<_>>().join("; ")
+        self.series.iter().filter_map(describe_series).collect::<Vec<_>>().join("; ")
     }
 }
 

@@ -245,11 +245,15 @@ impl Sheet {
         self.text([RIGHT, name], Anchor::End, TextColor::Faint, "step");
     }
 
-    /// Draws the line of series `number` of `most`, with its markers between those of the others.
-    pub fn draw_series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
+    /// Draws the line of series `number` of `series_count`, with its markers between those of the others.
+    pub fn draw_series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, series_count: usize) {
         self.line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);
-        points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.draw_marker(ink, point));
+        points
+            .iter()
+            .skip(every * number / series_count)
+            .step_by(every)
+            .for_each(|&point| self.draw_marker(ink, point));
     }
 
     /// Draws a legend in a row, with the line, marker and name of each series.

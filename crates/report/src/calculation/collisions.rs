@@ -2,7 +2,7 @@
 //! (collisions.md 3 to 6).
 use super::{format_vector, render_states, render_table};
 use crate::{
-    detect::{self, Detect, Overlap},
+    detect::{self, DetectReport, Overlap},
     number::format_short,
     style::Style,
     words::explanation::explain_letters,
@@ -56,8 +56,8 @@ impl<'a> CollisionWalk<'a> {
             return Some(format!("{}:\n{}\n", PairText(pair), report.body(format_short, Style::Plain)));
         }
         let motion = &PairMotion::from_positions(self.scene, pair, q_start, q_end);
-        let computation =
-            Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(format_short, Style::Plain);
+        let computation = DetectReport { study: &Study::for_motion(motion).ok()?, place: None }
+            .computation(format_short, Style::Plain);
         let moving = detect::render_motion(motion, format_short, Style::Plain);
         Some(format!("{}:\n{moving}\n{}{computation}\n", PairText(pair), render_letters(motion)))
     }
@@ -217,7 +217,8 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     let rate = 1.0 / members().map(mass).sum::<f64>();
     let center = rate * members().map(|particle| mass(particle) * vector_at(start, particle)).sum::<Vec2>();
     let motion = rate * members().map(|particle| mass(particle) * shift(particle)).sum::<Vec2>();
-    let sum = |of: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * of(particle)).sum::<f64>();
+    let sum =
+        |quantity: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * quantity(particle)).sum::<f64>();
     let s = |particle: usize| vector_at(start, particle) - center;
     let momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
     let inertia = sum(&|particle| s(particle).dot(&s(particle)));

@@ -27,7 +27,7 @@ pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
 
 /// Renders one finding as a sentence, with its values side by side.
 pub(super) fn render_finding(finding: &Finding, style: Style) -> String {
-    format!("  {}\n{}", finding.describe(), side_by_side(&finding.detail).text(style))
+    format!("  {}\n{}", finding.describe(), side_by_side(&finding.detail).render_text(style))
 }
 
 /// One of the values that a finding compares.
@@ -77,7 +77,7 @@ pub(crate) struct SideBySide {
 }
 
 impl SideBySide {
-    fn text(&self, style: Style) -> String {
+    fn render_text(&self, style: Style) -> String {
         let lines = |lines: &[String]| lines.iter().map(|line| format!("  {line}\n")).collect::<String>();
         let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
         if !self.rows.is_empty() {
@@ -176,13 +176,14 @@ fn compare_with_factor(
     factor: f64,
     wrong: Option<usize>,
 ) -> SideBySide {
-    let of = |coefficients: &[f64], power: usize| coefficients.iter().rev().nth(power).copied();
+    let coefficient_at = |coefficients: &[f64], power: usize| coefficients.iter().rev().nth(power).copied();
     let powers = expected.len().max(actual.len());
     let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
     let factor = if is_one { 1.0 } else { factor };
     let differing = find_differing_powers(expected, actual, factor);
     let row = |power: usize| {
-        let (expected, actual) = (of(expected, power).map(|value| factor * value), of(actual, power));
+        let (expected, actual) =
+            (coefficient_at(expected, power).map(|value| factor * value), coefficient_at(actual, power));
         let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
         let is_missing = expected.is_some() != actual.is_some();
         Row {

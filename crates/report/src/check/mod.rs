@@ -94,7 +94,7 @@ impl Check<'_> {
     }
 
     /// Renders the report as text.
-    pub fn text(&self, style: Style) -> String {
+    pub fn render_text(&self, style: Style) -> String {
         text::render(self, style)
     }
 

@@ -92,12 +92,12 @@ impl Steps {
         {
             self.numbers.insert(place, step);
         }
-        let wanted = match shown {
+        let is_listed = match shown {
             StepChoice::None => false,
             StepChoice::All => true,
             StepChoice::Selected(steps) => steps.contains(&step),
         };
-        if !wanted {
+        if !is_listed {
             return;
         }
         let place = match self.kept_steps.binary_search_by_key(&step, |kept| kept.number) {
@@ -123,10 +123,10 @@ impl Steps {
 
 /// Returns the wrong steps by the official rule book, or those by the other one if the official one has none.
 fn official_steps(check: &Check<'_>) -> (Book, Steps) {
-    let of = |book| (book, check.steps.steps_of_book(book, check.outcome.findings_by(book)));
-    let official = of(check.book());
+    let steps_of = |book| (book, check.steps.steps_of_book(book, check.outcome.findings_by(book)));
+    let official = steps_of(check.book());
     if official.1.numbers.is_empty() && official.1.kept_steps.is_empty() && check.rules.includes_fair() {
-        return of(Book::Fair);
+        return steps_of(Book::Fair);
     }
     official
 }

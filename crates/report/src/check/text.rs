@@ -43,13 +43,13 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         return parts.join("\n");
     }
     // The cause is shown before its first occurrence.
-    let is_told = !is_other_scene(check);
-    parts.extend(render_mistakes(check, style).filter(|_| is_told));
+    let shows_mistakes = !is_other_scene(check);
+    parts.extend(render_mistakes(check, style).filter(|_| shows_mistakes));
     // If all steps are shown, the first finding is one of them.
     let first = find_first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::advice_lines(check), style));
-    parts.extend(steps::render(check, style).filter(|_| is_told));
+    parts.extend(steps::render(check, style).filter(|_| shows_mistakes));
     let has_tables = check.tables;
     if has_tables {
         parts.push(render_residuals(outcome, style));
@@ -78,8 +78,8 @@ fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Styl
 
 /// Renders the program's likely mistakes, as many as fit on a screen.
 fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
-    let most = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
-    let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
+    let max_shown = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
+    let (shown, more) = check.explanations.split_at(check.explanations.len().min(max_shown));
     // The example is left out here, because the first difference below is also an example.
     let has_example = check.tables || find_first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };

@@ -29,7 +29,7 @@ pub struct Overlap<'a> {
 
 impl Overlap<'_> {
     /// Renders the report as text.
-    pub fn text(&self, style: Style) -> String {
+    pub fn render_text(&self, style: Style) -> String {
         style.paint(TextStyle::Strong, &title(self.pair, self.step, self.trace, self.scene))
             + "\n"
             + &self.body(format_exact, style)

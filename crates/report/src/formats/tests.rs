@@ -72,9 +72,9 @@ fn json_follows_its_schema() {
 #[test]
 fn every_format_lists_skipped_entries_once() {
     let entry = |name: &str, why: &str| SkippedEntry { name: name.to_owned(), reason: why.to_owned() };
-    let passed_over = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
+    let skipped_entries = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
     for format in Format::ALL.iter().filter(|format| format.takes_several()) {
-        let document = format.render_class(&all(), &passed_over);
+        let document = format.render_class(&all(), &skipped_entries);
         assert_harmless(&document);
         assert_eq!(document.matches(".hidden").count(), 1, "{}", format.name());
         assert!(
@@ -82,15 +82,15 @@ fn every_format_lists_skipped_entries_once() {
         );
         assert_eq!(format.render_class(&all(), &[]), format.render(&all()));
     }
-    assert_valid("grade.schema.json", &Format::Json.render_class(&all(), &passed_over));
+    assert_valid("grade.schema.json", &Format::Json.render_class(&all(), &skipped_entries));
     // A class has one suite, and so the same groups.
-    let csv = csv_of_submissions(&[samples::accepted_grade(), samples::accepted_grade()], &passed_over);
+    let csv = csv_of_submissions(&[samples::accepted_grade(), samples::accepted_grade()], &skipped_entries);
     let mut rows = csv::Reader::from_reader(csv.as_bytes());
     let names: Vec<String> = rows.records().map(|row| row.expect("rows of one length")[0].to_owned()).collect();
     assert_eq!(names[2..], [".hidden", "'=a|b,<c>::d"]);
-    assert_eq!(json_lines(&all(), &passed_over).lines().count(), 5);
+    assert_eq!(json_lines(&all(), &skipped_entries).lines().count(), 5);
     let mut one = [samples::accepted_grade()];
-    add_warnings(&mut one, &passed_over);
+    add_warnings(&mut one, &skipped_entries);
     for format in Format::ALL.iter().filter(|format| **format != Format::Csv) {
         assert!(format.render(&one).contains(".hidden"), "{}", format.name());
     }

@@ -17,15 +17,15 @@ pub(crate) struct SceneShare {
     pub(crate) run: usize,
 }
 
-/// Renders the report on the class. It lists at most `most` scenes, mistakes, and names of submissions with the same
-/// program.
-pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
+/// Renders the report on the class. It lists at most `max_rows` scenes, mistakes, and names of submissions with the
+/// same program.
+pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(TextStyle::Strong, "Class"), render_head(grades));
     let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
-        for (scene, share) in scenes.iter().take(most) {
+        for (scene, share) in scenes.iter().take(max_rows) {
             let percent = 100.0 * share.accepted as f64 / share.run.max(1) as f64;
             table.row([
                 format!("{} of {}", share.accepted, share.run).into(),
@@ -34,8 +34,8 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
             ]);
         }
         text += &table.render(style);
-        if scenes.len() > most {
-            let _ = writeln!(text, "  and {}", format_count((scenes.len() - most) as u64, "more scene"));
+        if scenes.len() > max_rows {
+            let _ = writeln!(text, "  and {}", format_count((scenes.len() - max_rows) as u64, "more scene"));
         }
         if whole > 0 {
             let _ = writeln!(text, "  {} accepted for all", format_count(whole as u64, "scene"));
@@ -45,7 +45,7 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
     if !mistakes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
-        for SharedMistake { mistake, members } in mistakes.iter().take(most) {
+        for SharedMistake { mistake, members } in mistakes.iter().take(max_rows) {
             let what = describe_likely(&grades[members[0]], mistake);
             table.row([format_count(members.len() as u64, "submission").into(), to_one_line(&what).into()]);
         }
@@ -56,7 +56,7 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "The same program, byte for byte"));
         for members in &same {
             let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
-            let _ = writeln!(text, "  {}", list_first(&names, most));
+            let _ = writeln!(text, "  {}", list_first(&names, max_rows));
         }
     }
     text
@@ -162,8 +162,8 @@ pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize)
             share.accepted += usize::from(scene.verdict.is_accepted());
         }
     }
-    let known = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
-    let (whole, mut wrong): (Vec<_>, Vec<_>) = known.partition(|(_, share)| share.accepted == share.run);
+    let judged = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
+    let (whole, mut wrong): (Vec<_>, Vec<_>) = judged.partition(|(_, share)| share.accepted == share.run);
     // Shares are compared as fractions. The sort is stable, so that equal shares stay in the suite's order.
     wrong.sort_by(|(_, a), (_, b)| (a.accepted * b.run).cmp(&(b.accepted * a.run)));
     (wrong, whole.len())
@@ -219,11 +219,11 @@ mod tests {
         let grades = [with("zoe", "1", &["kim"]), with("ann", "2", &[]), with("kim", "1", &["zoe"])];
         assert!(render_class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
         let shown = |reader| {
-            let told: Vec<Grade> =
+            let visible: Vec<Grade> =
                 grades.iter().map(|grade| Format::Json.visible_part(grade, reader, false).into_owned()).collect();
             let page = GradePage { grade: &grades[0], card: &|_| None, class: None, reader }.html();
-            let table = csv_of_submissions(&told, &[]).contains(",kim,");
-            (Format::Json.render(&told).contains("same_program"), page.contains("kim"), table)
+            let table = csv_of_submissions(&visible, &[]).contains(",kim,");
+            (Format::Json.render(&visible).contains("same_program"), page.contains("kim"), table)
         };
         assert_eq!(shown(Audience::Staff), (true, true, true));
         assert_eq!(shown(Audience::Student), (false, false, false));

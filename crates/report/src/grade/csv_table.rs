@@ -6,7 +6,7 @@ use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
 use fosssim_mistakes::together::mistake_points;
 
 /// Renders a table with one row per scene.
-pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,\
                 rules_differ,likely_mistake_key";
     let rows = grades.iter().flat_map(|grade| {
@@ -35,7 +35,7 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
         })
     });
     let head: Vec<String> = head.split(',').map(str::to_owned).collect();
-    let rest = empty_rows(passed_over, &head, "summary");
+    let rest = empty_rows(skipped_entries, &head, "summary");
     write_table(head, rows.chain(rest))
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
 /// submission is not accepted everywhere. `same_program` names the other submissions with the same program. `worth` is
 /// the number of points that fixing the first likely mistake would give. Skipped entries have rows with nothing but the
 /// reason.
-pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
                 reason,same_program,worth";
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
@@ -82,12 +82,12 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
         }));
         row
     });
-    let rest = empty_rows(passed_over, &head, "reason");
+    let rest = empty_rows(skipped_entries, &head, "reason");
     write_table(head, rows.chain(rest))
 }
 
 /// Returns rows for skipped entries. The column `reasons` has the reason why each was skipped.
-fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
+fn empty_rows(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &SkippedEntry, column: &str| match column {
         "submission" => escape_formula(&entry.name),
         "verdict" => NOT_GRADED.to_owned(),
@@ -97,7 +97,7 @@ fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> V
     // A group may have the same name as another column.
     let own = head.iter().position(|column| column == reasons).unwrap_or_default();
     let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
-    passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
+    skipped_entries.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
 }
 
 fn write_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {

@@ -47,8 +47,8 @@ pub(crate) struct GradeDocument {
     /// The grades of the submissions.
     grades: Vec<GradeView>,
     /// The skipped entries of the class's folder, which are not submissions; left out if there are none.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    passed_over: Vec<SkippedEntry>,
+    #[serde(rename = "passed_over", skip_serializing_if = "Vec::is_empty")]
+    skipped_entries: Vec<SkippedEntry>,
 }
 
 view! {
@@ -280,10 +280,10 @@ view! {
 }
 
 /// Renders all grades as one document.
-pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
-    let (grades, passed_over) =
-        (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(strip_entry).collect());
-    to_document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
+pub(crate) fn render(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
+    let (grades, skipped_entries) =
+        (grades.iter().map(GradeView::from).collect(), skipped_entries.iter().map(strip_entry).collect());
+    to_document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, skipped_entries })
 }
 
 fn strip_entry(entry: &SkippedEntry) -> SkippedEntry {
@@ -291,14 +291,14 @@ fn strip_entry(entry: &SkippedEntry) -> SkippedEntry {
 }
 
 /// Renders one line of JSON per grade, and one per skipped entry.
-pub fn render_lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+pub fn render_lines(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
-    let passed_over = passed_over.iter().map(|entry| {
+    let skipped_entries = skipped_entries.iter().map(|entry| {
         let SkippedEntry { name, reason: why } = strip_entry(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });
-    grades.chain(passed_over).map(|line| line.unwrap_or_default() + "\n").collect()
+    grades.chain(skipped_entries).map(|line| line.unwrap_or_default() + "\n").collect()
 }
 
 /// Returns the ratio of processor times, if the submission was timed.

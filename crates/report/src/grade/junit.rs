@@ -7,7 +7,7 @@ use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// Renders all grades as one document.
-pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+pub(crate) fn render(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
         if let Some(unfit) = words::describe_unfit(grade) {
@@ -42,9 +42,9 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
             report.add_test_suite(suite);
         }
     }
-    if !passed_over.is_empty() {
+    if !skipped_entries.is_empty() {
         let mut suite = TestSuite::new(NOT_GRADED);
-        for SkippedEntry { name, reason: why } in passed_over {
+        for SkippedEntry { name, reason: why } in skipped_entries {
             let mut status = TestCaseStatus::skipped();
             status.set_message(strip_control_characters(why));
             suite.add_test_case(TestCase::new(strip_control_characters(name), status));

@@ -142,9 +142,9 @@ pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
 }
 
 /// Joins the first names into a list, such as `a, b, c and 2 more`.
-pub(super) fn list_first(names: &[impl AsRef<str>], most: usize) -> String {
-    let shown: Vec<_> = names.iter().take(most).map(|name| to_one_line(name.as_ref())).collect();
-    let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
+pub(super) fn list_first(names: &[impl AsRef<str>], max_names: usize) -> String {
+    let shown: Vec<_> = names.iter().take(max_names).map(|name| to_one_line(name.as_ref())).collect();
+    let more = if names.len() > max_names { format!(" and {} more", names.len() - max_names) } else { String::new() };
     shown.join(", ") + &more
 }
 
@@ -155,9 +155,9 @@ pub fn format_points(value: f64) -> String {
 }
 
 /// Formats a score, such as `12.5 of 20 points`.
-pub fn format_score(reached: f64, most: f64) -> String {
-    let plural = if format_points(most) == "1" { "" } else { "s" };
-    format!("{} of {} point{plural}", format_points(reached), format_points(most))
+pub fn format_score(reached: f64, max_points: f64) -> String {
+    let plural = if format_points(max_points) == "1" { "" } else { "s" };
+    format!("{} of {} point{plural}", format_points(reached), format_points(max_points))
 }
 
 /// Formats points that may be missing. They are missing if the grader failed, which does not give zero points.

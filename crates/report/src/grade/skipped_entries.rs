@@ -9,20 +9,20 @@ use fosssim_findings::{Grade, SkippedEntry};
 
 /// Adds a warning about each skipped entry to the grade if there is only one. A report on one submission has no list of
 /// skipped entries.
-pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
+pub fn add_warnings(grades: &mut [Grade], skipped_entries: &[SkippedEntry]) {
     if let [grade] = grades {
         let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.reason);
-        grade.warnings.extend(passed_over.iter().map(words));
+        grade.warnings.extend(skipped_entries.iter().map(words));
     }
 }
 
 /// Returns the list of skipped entries that follows a class's table in the text report.
-pub fn list_not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
-    if passed_over.is_empty() || grades.len() < 2 {
+pub fn list_not_graded(grades: &[Grade], skipped_entries: &[SkippedEntry], style: Style) -> String {
+    if skipped_entries.is_empty() || grades.len() < 2 {
         return String::new();
     }
     let mut table = Table::new([Align::Left, Align::Left]);
-    for SkippedEntry { name, reason: why } in passed_over {
+    for SkippedEntry { name, reason: why } in skipped_entries {
         table.row([shorten_name(&to_one_line(name)).into(), to_one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(TextStyle::Strong, "Not graded"), table.render(style))

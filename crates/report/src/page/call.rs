@@ -3,7 +3,7 @@ use super::{
     markup::{mark_difference, render_number},
     render_template,
 };
-use crate::{describe::pair_key, detect::Detect, number::format_g};
+use crate::{describe::pair_key, detect::DetectReport, number::format_g};
 use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
@@ -84,7 +84,7 @@ impl CallContent<'_> {
 
 /// Describes the decision that follows from the expected polynomials.
 fn describe_decision(study: &Study) -> String {
-    Detect { study, place: None }.decision(format_g)
+    DetectReport { study, place: None }.decision(format_g)
 }
 
 /// Returns whether a curve has a zero within the step. Without a zero, a curve is nearly a flat line, which a sentence
@@ -95,13 +95,13 @@ fn changes_sign(study: &Study) -> bool {
 
 /// Describes the polynomials whose signs do not change within the step.
 fn describe_signs(study: &Study) -> String {
-    let of = |is_wanted: bool| {
+    let roles = |is_wanted: bool| {
         let is_positive =
             |curve: &study::Curve| curve.positive_intervals.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
         let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
         names.map(|curve| curve.role.to_string()).collect::<Vec<_>>().join(", ")
     };
-    let parts = [("positive", of(true)), ("not positive", of(false))];
+    let parts = [("positive", roles(true)), ("not positive", roles(false))];
     let parts = parts.iter().filter(|(_, names)| !names.is_empty());
     let parts: Vec<String> = parts.map(|(sign, names)| format!("{sign}: {names}")).collect();
     format!("No expected polynomial changes its sign in the step. {}.", parts.join("; "))

@@ -44,7 +44,7 @@ impl Card {
 
     /// Returns a card that contains only text.
     pub fn from_words(words: &str) -> Self {
-        Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
+        Self { html: format!("<p>{}</p>\n", super::markup::escape(words)), ..Self::default() }
     }
 
     /// Returns the card with a remark above its content.

@@ -1,7 +1,7 @@
 //! One judged trace on a page.
 use super::{
     Case, call, data,
-    markup::{self, mark_difference, render_formula, text},
+    markup::{self, escape, mark_difference, render_formula},
     packed_motions::Precision,
     render_document, render_template, script, strip,
 };
@@ -48,7 +48,7 @@ impl Case<'_> {
     /// Renders the case as the whole content of a page.
     fn html(&self, key: &str) -> String {
         let check = &self.check;
-        let look = match (check.is_accepted(), check.difference()) {
+        let verdict_class = match (check.is_accepted(), check.difference()) {
             (true, None) => "good",
             (true, Some(_)) => "warn",
             (false, _) => "bad",
@@ -57,7 +57,7 @@ impl Case<'_> {
         let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some(), None);
         let data = self.evidence.map(|evidence| data::render_blocks(self, evidence, key, Precision::Budgeted));
         let content = self.render_trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
-        render_template(&CaseContent { check, key, look, content })
+        render_template(&CaseContent { check, key, verdict_class, content })
     }
 
     /// Returns the finding that is shown first: the official book's, or the other book's if the official book has none.
@@ -85,8 +85,8 @@ impl Case<'_> {
         format!(
             "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}\
              </section>\n",
-            text(&place),
-            text(&message)
+            escape(&place),
+            escape(&message)
         )
     }
 
@@ -109,7 +109,8 @@ impl Case<'_> {
 struct CaseContent<'a> {
     check: &'a Check<'a>,
     key: &'a str,
-    look: &'static str,
+    /// The CSS class for the color of the verdict.
+    verdict_class: &'static str,
     content: String,
 }
 

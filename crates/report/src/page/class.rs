@@ -39,8 +39,8 @@ pub struct ClassPage<'a> {
     /// The grades of all submissions.
     pub grades: &'a [Grade],
     /// The skipped entries of the class's folder, which are not submissions.
-    pub passed_over: &'a [SkippedEntry],
-    /// A function that returns the address of a submission's page, relative to the class's page.
+    pub skipped_entries: &'a [SkippedEntry],
+    /// A function that returns the URL of a submission's page, relative to the class's page.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
@@ -71,7 +71,7 @@ struct ClassContent<'a> {
 struct Cluster<'a> {
     heading: String,
     members: Vec<usize>,
-    /// A scene in which the members' mistake is visible, and the scene's address.
+    /// A scene in which the members' mistake is visible, and the scene's URL.
     scene: Option<(String, String)>,
     note: Option<&'a CourseNote>,
     /// The smallest scene on which the mistake is visible with a member's program. Teachers can demonstrate it in
@@ -84,7 +84,7 @@ struct Cluster<'a> {
 }
 
 impl ClassContent<'_> {
-    /// Returns the address of a scene on a submission's page.
+    /// Returns the URL of a scene on a submission's page.
     fn address(&self, grade: &Grade, scene: &str) -> String {
         format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
     }
@@ -102,15 +102,15 @@ impl ClassContent<'_> {
             ("good", "accepted", count("good")),
             ("bad", "not accepted", count("bad")),
             ("none", "never ran", count("none")),
-            ("left", "not graded", self.class.passed_over.len()),
+            ("left", "not graded", self.class.skipped_entries.len()),
         ];
         states.into_iter().filter(|(.., count)| *count > 0)
     }
 
     /// Returns the numbers of a submission's mistakes, in the form that the filter reads.
     fn mistake_numbers(&self, number: usize) -> String {
-        let made = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
-        made.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
+        let mistakes = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
+        mistakes.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
     }
 
     /// Returns the mistakes that several submissions make, the most frequent first.
@@ -156,7 +156,7 @@ impl ClassContent<'_> {
         group_same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
-    /// Returns the address of the first submission's page on which the scene is described, because it is wrong.
+    /// Returns the URL of the first submission's page on which the scene is described, because it is wrong.
     fn find_scene_with_mistake(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
@@ -339,7 +339,7 @@ mod tests {
     }
 
     fn page(grades: &[Grade]) -> String {
-        ClassPage { grades, passed_over: &[], page: &|grade| format!("reports/{}.html", grade.submission) }.html()
+        ClassPage { grades, skipped_entries: &[], page: &|grade| format!("reports/{}.html", grade.submission) }.html()
     }
 
     #[test]

@@ -34,7 +34,7 @@ impl ExplainedPage<'_> {
     pub fn html(&self) -> String {
         let cases = &self.diagnosis.cases;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
-        let look = if wrong == 0 && !cases.is_empty() { "good" } else { "bad" };
+        let title_class = if wrong == 0 && !cases.is_empty() { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
             ([], _) => "The smallest scenes on which the program is wrong".to_owned(),
             ([case], 0) => format!("{}: nothing to explain", case.scene),
@@ -42,7 +42,7 @@ impl ExplainedPage<'_> {
             (_, 1) => format!("1 of {} traces is wrong", cases.len()),
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
-        let content = ExplainedContent { page: self, title: &title, look, wrong };
+        let content = ExplainedContent { page: self, title: &title, title_class, wrong };
         render_document(&title, &render_template(&content), script())
     }
 }
@@ -53,7 +53,8 @@ impl ExplainedPage<'_> {
 struct ExplainedContent<'a> {
     page: &'a ExplainedPage<'a>,
     title: &'a str,
-    look: &'static str,
+    /// The CSS class for the color of the title.
+    title_class: &'static str,
     /// The number of traces that are wrong.
     wrong: usize,
 }

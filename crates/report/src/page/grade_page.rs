@@ -3,7 +3,7 @@ use super::{
     Card,
     card_details::{self, CardDetail, OUTPUT_BUDGET},
     case::mistakes,
-    markup::{count_scenes, note, text},
+    markup::{count_scenes, escape, note},
     render_document, render_template, script, smallest,
 };
 use crate::untrusted_text::{remove_escape_codes, to_one_line};
@@ -46,7 +46,7 @@ pub struct GradePage<'a> {
     pub grade: &'a Grade,
     /// A function that returns the stored card of this name, if there is one.
     pub card: &'a dyn Fn(Option<&str>) -> Option<Card>,
-    /// The address of the class's page, relative to this page; `None` if there is no such page.
+    /// The URL of the class's page, relative to this page; `None` if there is no such page.
     pub class: Option<&'a str>,
     /// The reader for whom the page is made.
     pub reader: Audience,
@@ -164,12 +164,12 @@ impl GradeContent<'_> {
 
 /// Renders a scene's name, which may be broken after a slash.
 fn break_at_slashes(name: &str) -> String {
-    text(&to_one_line(name)).replace('/', "/<wbr>")
+    escape(&to_one_line(name)).replace('/', "/<wbr>")
 }
 
 /// Describes as HTML what the scenes in which a program fails have in common.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
-    let words = text(&to_one_line(&words::describe_located(found)));
+    let words = escape(&to_one_line(&words::describe_located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
@@ -246,7 +246,7 @@ impl<'a> Article<'a> {
     }
 }
 
-/// Returns a key for a scene that is part of addresses. Scenes with different names have different keys.
+/// Returns a key for a scene that is part of URLs. Scenes with different names have different keys.
 pub(super) fn scene_key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
@@ -260,7 +260,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
     // The length is measured after escaping, which makes hostile text longer.
-    let shown = text(&shown);
+    let shown = escape(&shown);
     if shown.len() > *room {
         *room = 0;
         return "<p class=\"hint\">This page has no space for the output of programs in this scene and the next \

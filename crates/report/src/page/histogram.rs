@@ -15,8 +15,8 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
         let bar = (1..BAR_COUNT).filter(|&bar| share * BAR_COUNT as f64 >= bar as f64).count();
         counts[bar] += 1;
     }
-    let most = counts.into_iter().max().unwrap_or(0);
-    if most == 0 {
+    let largest_count = counts.into_iter().max().unwrap_or(0);
+    if largest_count == 0 {
         return String::new();
     }
     let words = |(bar, count): (usize, &usize)| format!("{} to {} %: {count}", 10 * bar, 10 * (bar + 1));
@@ -28,7 +28,7 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {
-        let (left, height) = (10 + 31 * bar, MAX_BAR_HEIGHT * count / most);
+        let (left, height) = (10 + 31 * bar, MAX_BAR_HEIGHT * count / largest_count);
         if count > 0 {
             let _ = write!(
                 svg,

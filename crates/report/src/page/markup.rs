@@ -18,7 +18,7 @@ pub(super) fn show_hidden(raw: &str) -> String {
 }
 
 /// Escapes visible text for an element or a quoted attribute.
-pub(super) fn text(raw: &str) -> String {
+pub(super) fn escape(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in show_hidden(raw).chars() {
         match c {
@@ -39,7 +39,7 @@ pub(crate) struct PageText;
 
 impl askama::filters::Escaper for PageText {
     fn write_escaped_str<W: Write>(&self, mut out: W, raw: &str) -> std::fmt::Result {
-        out.write_str(&text(raw))
+        out.write_str(&escape(raw))
     }
 }
 
@@ -51,14 +51,14 @@ pub(super) fn count_scenes(count: usize) -> String {
 /// Renders a course's note and its link.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
     let Some(note) = note else { return String::new() };
-    let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", text(address));
-    format!(" <span class=\"hint\">The course: {}.</span> ", note.line(text, link))
+    let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", escape(address));
+    format!(" <span class=\"hint\">The course: {}.</span> ", note.line(escape, link))
 }
 
 /// Renders a line whose formulas are written in HTML, with mathematical signs and with letters that have subscripts.
 pub(super) fn render_formula(line: &str) -> String {
     let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
-    ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
+    ["cm", "a", "b", "i"].into_iter().fold(escape(line), set)
 }
 
 /// Writes JSON for a data block. Nothing in it can end the block's element.
@@ -68,7 +68,7 @@ pub(super) fn render_data(value: &serde_json::Value) -> String {
 
 /// Formats a number for a table.
 pub(super) fn render_number(value: f64) -> String {
-    text(&format_g(value))
+    escape(&format_g(value))
 }
 
 /// Formats two numbers as HTML, and marks the digits of the second that differ from the first. If the numbers count as
@@ -79,10 +79,10 @@ pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (Str
     }
     let (expected, actual, place) = format_pair(expected, actual);
     let marked = match place {
-        Some(place) => format!("{}<mark>{}</mark>", text(&actual[..place]), text(&actual[place..])),
-        None => text(&actual),
+        Some(place) => format!("{}<mark>{}</mark>", escape(&actual[..place]), escape(&actual[place..])),
+        None => escape(&actual),
     };
-    (text(&expected), marked)
+    (escape(&expected), marked)
 }
 
 #[cfg(test)]
@@ -101,8 +101,8 @@ mod tests {
 
     #[test]
     fn hostile_text_stays_text() {
-        assert_eq!(text("<b a='1'>&\"x\"\n"), "&lt;b a=&#39;1&#39;&gt;&amp;&quot;x&quot;\n");
-        assert_eq!(text("a\u{202e}b\u{0}c\u{1b}[1m\u{feff}"), "a\\u{202e}b\\u{0}c\\u{1b}[1m\\u{feff}");
+        assert_eq!(escape("<b a='1'>&\"x\"\n"), "&lt;b a=&#39;1&#39;&gt;&amp;&quot;x&quot;\n");
+        assert_eq!(escape("a\u{202e}b\u{0}c\u{1b}[1m\u{feff}"), "a\\u{202e}b\\u{0}c\\u{1b}[1m\\u{feff}");
         assert_eq!(render_data(&serde_json::json!("</script><!--")), r#""\u003c/script>\u003c!--""#);
     }
 }

@@ -103,7 +103,7 @@ fn render_document(title: &str, body: &str, script: &str) -> String {
          'none'; form-action 'none'",
         digest(&style)
     );
-    let title = markup::text(title);
+    let title = markup::escape(title);
     let script = if script.is_empty() { String::new() } else { format!("<script>{script}</script>\n") };
     format!(
         "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\

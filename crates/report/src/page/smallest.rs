@@ -1,6 +1,6 @@
 //! The part of a page about the smallest scene for a cause: the scene, both motions, the differing values, and the
 //! computation by hand.
-use super::{Card, case::mistakes, markup::text, render_template};
+use super::{Card, case::mistakes, markup::escape, render_template};
 use crate::{smallest::title, words::describe_first};
 use askama::Template;
 use fosssim_findings::smallest_scene::SmallestScene;
@@ -34,5 +34,5 @@ pub(super) fn list_parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
 
 /// Renders preformatted text below a label.
 pub(super) fn format_pre(label: &str, words: &str) -> String {
-    format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", text(words.trim_end()))
+    format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", escape(words.trim_end()))
 }

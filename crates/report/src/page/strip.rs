@@ -12,13 +12,13 @@ const MAX_COLUMNS: usize = 480;
 
 /// Renders the strip, and a text with the number of steps of each kind.
 pub(super) fn html(steps: &[Step]) -> String {
-    let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
+    let count = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(
         "{} right, {} wrong by themselves, {} right but starting from a wrong state{}",
-        of(StepClass::Right),
-        of(StepClass::Wrong),
-        of(StepClass::Inherited),
-        match of(StepClass::Unknown) {
+        count(StepClass::Right),
+        count(StepClass::Wrong),
+        count(StepClass::Inherited),
+        match count(StepClass::Unknown) {
             0 => String::new(),
             unknown => format!(", {unknown} not judged"),
         }

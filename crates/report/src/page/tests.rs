@@ -46,7 +46,7 @@ fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanatio
 fn text_of(scene: &Scene, trace: &[u8]) -> String {
     let outcome =
         replay::judge(scene, trace, &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
-    check_of("scene", "trace", &outcome, &[]).text(crate::style::Style::Plain)
+    check_of("scene", "trace", &outcome, &[]).render_text(crate::style::Style::Plain)
 }
 
 fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
@@ -87,9 +87,9 @@ fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
         for line in books.lines().take(2) {
             let (name, rest) = line.trim().split_once(": ").expect("a verdict");
             let (word, grounds) = rest.split_once(": ").unwrap_or((rest, ""));
-            let row = format!("<li>{}: ", markup::text(name));
+            let row = format!("<li>{}: ", markup::escape(name));
             let row = html.split_once(&row).expect("a row").1.split_once("</li>").expect("a row").0;
-            assert!(row.contains(word) && row.contains(&markup::text(grounds)), "{line} in {row}");
+            assert!(row.contains(word) && row.contains(&markup::escape(grounds)), "{line} in {row}");
         }
     }
 }

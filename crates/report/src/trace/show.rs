@@ -40,7 +40,7 @@ pub struct ShownStep<'a> {
 
 impl ShownStep<'_> {
     /// Renders the step for people. If both records are equal, only the end record is shown.
-    pub fn text(&self, style: Style) -> String {
+    pub fn render_text(&self, style: Style) -> String {
         let heading = match self.step {
             0 => "Initial record".to_owned(),
             step => format!("Step {step} of {}", self.steps),

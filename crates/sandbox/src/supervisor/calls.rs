@@ -117,8 +117,8 @@ pub(super) const CALL_GROUPS: [&[NamedCall]; 10] = [
 
 /// Returns the usual name of a call.
 pub(super) fn call_name(number: i64) -> String {
-    let known = CALL_GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
-    known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())
+    let entry = CALL_GROUPS.into_iter().flatten().find(|(_, entry)| *entry == number);
+    entry.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())
 }
 
 #[cfg(test)]

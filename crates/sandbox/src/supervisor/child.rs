@@ -85,7 +85,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::enter_folder(plan.folder.as_fd()).map_err(failure_at("enter the working folder"))?;
     if plan.order.layers.namespaces && !plan.order.allows_tools {
         // This also changes the current folder.
-        file_view::leave_processes(&plan.order)?;
+        file_view::hide_other_processes(&plan.order)?;
     }
     // If memory runs out, the kernel should kill this process first. Some containers do not allow this setting.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
@@ -131,7 +131,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // This is the default of Linux. With it, a deep recursion ends in the same way on every host.
     const STACK_BYTES: u64 = 8 << 20;
-    const SPARE_MEMORY: u64 = 512 << 20;
+    const SPARE_MEMORY_BYTES: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
     // The run's own user can have other processes only in another container that uses the same numbers.
@@ -155,7 +155,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::set_limit(Resource::Sigpending, PENDING_SIGNALS)?;
     // Address space is not memory in use: libraries reserve more than they use. The memory in use is checked
     // separately.
-    let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
+    let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY_BYTES);
     sys::set_limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
     // The kernel counts per user or per user namespace. If other runs share it, this limit only stops fork bombs, and
     // the supervisor counts the processes of the run itself.
@@ -298,8 +298,8 @@ pub(super) struct OpenedFile {
 impl OpenedFile {
     /// Opens the program. If only its owner may use it, or if nothing can be executed in its folder, it is copied into
     /// memory, and the copy is opened. If the user of the run could not read the program, the supervisor's checks would
-    /// not work either. A copy of more than `most` bytes fails as if the kernel had no memory left.
-    pub(super) fn new(path: &Path, for_another: bool, most: u64) -> Result<Self, Failure> {
+    /// not work either. A copy of more than `max_bytes` bytes fails as if the kernel had no memory left.
+    pub(super) fn new(path: &Path, for_another: bool, max_bytes: u64) -> Result<Self, Failure> {
         let open = || -> io::Result<Self> {
             const READ_AND_EXECUTE: u32 = 0o005;
             let program = File::open(path)?;
@@ -307,7 +307,7 @@ impl OpenedFile {
             let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
             match fits && !mounts::forbids_execution(program.as_fd()) {
                 true => Ok(Self { file: program.into(), is_copy: false }),
-                false => Self::copy(&program, most),
+                false => Self::copy(&program, max_bytes),
             }
         };
         open().map_err(|error| match error.kind() {
@@ -317,9 +317,9 @@ impl OpenedFile {
     }
 
     /// Copies the program into memory. Holes in the file remain holes.
-    fn copy(program: &File, most: u64) -> io::Result<Self> {
+    fn copy(program: &File, max_bytes: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
-        memory_folder::copy_blocks(program, &mut copy, most)?;
+        memory_folder::copy_blocks(program, &mut copy, max_bytes)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing cannot be executed, so it is opened again only for reading.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;

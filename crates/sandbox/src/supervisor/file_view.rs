@@ -28,8 +28,8 @@ use crate::{
 const BUILD_ROOT: &str = "/proc";
 /// The temporary name of the old root below the new root.
 const OLD_ROOT_NAME: &str = "/.host";
-/// The folder in which the prepared root of an ordinary user shows processes. Without it, copies of this root may not
-/// show processes.
+/// The folder in which the prepared root of a user without privileges shows processes. Without it, copies of this root
+/// may not show processes.
 const PROC_PLACEHOLDER: &str = "/.processes";
 /// The maximum number of links on a path. The kernel has the same limit.
 const MAX_LINKS: u32 = 40;
@@ -61,7 +61,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     }
     hide_own_files(order, Path::new("/"))?;
     add_processes(order)?;
-    leave_host()?;
+    detach_host_files()?;
     close_root()
 }
 
@@ -74,11 +74,13 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     new_root(order)?;
     hide_own_files(order, Path::new("/"))?;
     if sys::user_id() != 0 {
-        // The kernel allows an ordinary user to show processes only if processes are already visible elsewhere.
+        // The kernel allows a user without privileges to show processes only if processes are already visible
+        // elsewhere.
         std::fs::create_dir(PROC_PLACEHOLDER).map_err(failure_at("make /proc"))?;
-        mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(failure_at("mount /proc"))?;
+        mounts::mount(c"proc", &to_c_string(Path::new(PROC_PLACEHOLDER))?, c"", false)
+            .map_err(failure_at("mount /proc"))?;
     }
-    leave_host()
+    detach_host_files()
 }
 
 /// Adds the run's parts to a copy of a prepared root: a working folder with the contents of `folder` and `files`, and
@@ -94,7 +96,7 @@ pub(super) fn complete_view(
 ) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user_id() != 0 {
-        mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(failure_at("leave other processes"))?;
+        mounts::detach(&to_c_string(Path::new(PROC_PLACEHOLDER))?).map_err(failure_at("leave other processes"))?;
     }
     let real = wire::to_path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
@@ -110,11 +112,11 @@ pub(super) fn complete_view(
 fn new_root(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
     mounts::make_mounts_private().map_err(failure_at("make the mounts private"))?;
-    let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
+    let (site, room) = (to_c_string(Path::new(BUILD_ROOT))?, to_c_string(Path::new(ROOT_OPTIONS))?);
     mounts::mount(c"tmpfs", &site, &room, false).map_err(failure_at("make a root folder"))?;
     let old = PathBuf::from(format!("{BUILD_ROOT}{OLD_ROOT_NAME}"));
     std::fs::create_dir(&old).map_err(failure_at("make a root folder"))?;
-    mounts::change_root(&site, &text(&old)?).map_err(failure_at("change the root folder"))?;
+    mounts::change_root(&site, &to_c_string(&old)?).map_err(failure_at("change the root folder"))?;
     let mut view = FileView { mounted_places: Vec::new() };
     let mut readable = file_rules::visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
@@ -175,7 +177,7 @@ fn add_processes(order: &RunOrder) -> Result<(), Failure> {
 /// Hides `/proc` from this process, except for the process's own entry. The entry is in an ordinary folder, because the
 /// link count of the real `/proc` reveals the number of processes. If no file rules protect the entry, only some of its
 /// files are visible. Otherwise the program could name `/proc/self/exe`, which is the grader at first, as its loader.
-pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
+pub(super) fn hide_other_processes(order: &RunOrder) -> Result<(), Failure> {
     let own = std::process::id().to_string();
     let place = Path::new("/proc").join(&own);
     let leave = || -> io::Result<()> {
@@ -201,8 +203,8 @@ pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
     leave().map_err(failure_at("leave other processes"))
 }
 
-fn leave_host() -> Result<(), Failure> {
-    mounts::detach(&text(Path::new(OLD_ROOT_NAME))?).map_err(failure_at("detach the host's files"))?;
+fn detach_host_files() -> Result<(), Failure> {
+    mounts::detach(&to_c_string(Path::new(OLD_ROOT_NAME))?).map_err(failure_at("detach the host's files"))?;
     std::fs::remove_dir(OLD_ROOT_NAME).map_err(failure_at("detach the host's files"))
 }
 
@@ -218,7 +220,7 @@ fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     memory_folder::copy(from, folder)
 }
 
-fn text(path: &Path) -> Result<CString, Failure> {
+fn to_c_string(path: &Path) -> Result<CString, Failure> {
     c_string(path).map_err(failure_at("read a path"))
 }
 

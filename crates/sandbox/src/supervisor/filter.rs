@@ -73,8 +73,8 @@ const PROCESS_QUERIES: [i64; 6] = [
 /// or no counter would show it.
 const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
 
-/// Operations that wait for a futex word that may be shared, with the clocks that are allowed for a time limit. The C
-/// library needs them to wait for the end of a thread.
+/// The futex wait operations that may use shared memory, once for each clock that a timeout may use. The C library
+/// needs them to wait for the end of a thread.
 const SHARED_WAITS: [u64; 4] = [
     libc::FUTEX_WAIT as u64,
     libc::FUTEX_WAIT_BITSET as u64,
@@ -143,8 +143,8 @@ pub(super) fn compile_filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
         filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
     }
     // If a call is in any group, it exists, and the earlier filters decide about it. Other calls do not exist.
-    let known = calls::CALL_GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
-    filters.push(compile(known, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
+    let existing = calls::CALL_GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
+    filters.push(compile(existing, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
     Ok(filters)
 }
 

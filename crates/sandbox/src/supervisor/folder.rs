@@ -63,13 +63,13 @@ pub(super) fn file_system_usage(folder: BorrowedFd<'_>) -> FolderUsage {
 /// Counts the bytes and files in a folder. Counting stops as soon as a limit is exceeded.
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
     let mut contents = FolderUsage::default();
-    let whole = walk(folder, 0, &mut |_, metadata| {
+    let is_complete = walk(folder, 0, &mut |_, metadata| {
         contents.bytes += metadata.blocks() * BLOCK_BYTES;
         contents.files += 1;
         contents.folders += u64::from(metadata.is_dir());
         contents.bytes <= most_bytes && contents.files <= most_files
     });
-    contents.exceeds_limit = !whole;
+    contents.exceeds_limit = !is_complete;
     contents
 }
 
@@ -205,7 +205,7 @@ mod tests {
     #[test]
     fn closed_folders_are_opened_at_any_depth_and_can_then_be_removed() {
         let folder = tempfile::tempdir().unwrap();
-        // Folders are created from the inside out, so that an ordinary user can do it as well.
+        // Folders are created from the inside out, so that a user without privileges can do it as well.
         let deep = folder.path().join("d/".repeat(300));
         std::fs::create_dir_all(&deep).unwrap();
         let mut closed = deep.components().as_path();

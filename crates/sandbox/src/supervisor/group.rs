@@ -25,7 +25,7 @@ use crate::{
 const GROUP_PREFIX: &str = "fosssim-oracle-";
 /// Memory that is added to the limit, for pipe buffers, page tables and other data of the kernel that are counted as
 /// well.
-const SPARE_MEMORY: u64 = 64 << 20;
+const SPARE_MEMORY_BYTES: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
 
 /// The hierarchy to which a control group belongs.
@@ -128,7 +128,7 @@ impl Group {
         // Files are counted here, mainly those in the working folder, and so are buffers of others. Neither counts for
         // the program's own limit.
         let limits = &order.limits;
-        let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY);
+        let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY_BYTES);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
         for part in &self.parts {
             let values: &[(&CStr, String)] = match part.kind {

@@ -35,7 +35,7 @@ use crate::{
 
 /// The time without orders after which a keeper ends, so that others can use its user.
 const MAX_IDLE: Duration = Duration::from_secs(2);
-/// The number of the program's process in its namespace, in which the supervisor is number 1.
+/// The ID of the program's process in its namespace, in which the supervisor has the ID 1.
 const PROGRAM_PID: i32 = 2;
 
 /// Serves the requests that arrive on standard input, which is a socket.
@@ -99,14 +99,14 @@ enum ForkSide {
 /// Takes the exclusive resources of the runs, and prepares their namespaces in a child process.
 fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
-    let alone = sys::single_thread().map_err(failure_at("fork"))?;
+    let single_thread = sys::single_thread().map_err(failure_at("fork"))?;
     let held = HeldResources::take(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
         return Ok(ForkSide::Guardian { keeper, held });
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(failure_at("make namespaces"))?;
     file_view::prepare(order)?;
-    let prepared = PreparedRun::for_order(order, PROGRAM_PID, alone)?;
+    let prepared = PreparedRun::for_order(order, PROGRAM_PID, single_thread)?;
     Ok(ForkSide::Keeper(Keeper { resources: Some(held), prepared }))
 }
 

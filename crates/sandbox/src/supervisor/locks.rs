@@ -17,7 +17,8 @@ pub(super) fn is_lock_call(call: i64) -> bool {
 
 /// Returns whether the announced call locks a file below `root`.
 pub(super) fn is_inside(announced: &PendingCall, root: &Path) -> bool {
-    let known = announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
+    let is_lock_call =
+        announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);
-    known && std::fs::read_link(entry).is_ok_and(|place| place.starts_with(root))
+    is_lock_call && std::fs::read_link(entry).is_ok_and(|place| place.starts_with(root))
 }

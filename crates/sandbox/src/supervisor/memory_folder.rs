@@ -64,8 +64,8 @@ pub(super) fn add_files(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Res
 ///
 /// # Errors
 ///
-/// Fails with `OutOfMemory` if the blocks take more than `most` bytes.
-pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<()> {
+/// Fails with `OutOfMemory` if the blocks take more than `max_bytes` bytes.
+pub(super) fn copy_blocks(from: &File, to: &mut File, max_bytes: u64) -> io::Result<()> {
     let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);
     loop {
@@ -83,7 +83,7 @@ pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<(
         };
         if read.iter().any(|byte| *byte != 0) {
             copied += read.len() as u64;
-            if copied > most {
+            if copied > max_bytes {
                 return Err(io::Error::from_raw_os_error(libc::ENOMEM));
             }
             to.write_all_at(read, at)?;

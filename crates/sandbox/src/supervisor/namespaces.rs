@@ -2,8 +2,8 @@
 //!
 //! The supervisor itself moves into them. It forks once into a new process namespace, where it is process 1, so the
 //! kernel kills all its descendants when it ends for any reason. The process outside, the *guardian*, only waits. Root
-//! needs no user namespace. An ordinary user gets a user namespace in which it keeps its identity and has rights only
-//! over the new namespaces. The rights end when the program is executed.
+//! needs no user namespace. A user without privileges gets a user namespace in which it keeps its identity and has
+//! rights only over the new namespaces. The rights end when the program is executed.
 //!
 //! A supervisor that serves many runs ([`keeper`](super::keeper)) moves into namespaces once. For each run it creates
 //! new ones inside, for processes, mounts and messages.
@@ -40,8 +40,8 @@ pub(super) fn enter(order: &RunOrder) -> Result<NamespaceSide, Failure> {
     }
 }
 
-/// Forks into a new process namespace. An ordinary user also gets a new user namespace. The child ends when the
-/// guardian ends.
+/// Forks into a new process namespace. A user without privileges also gets a new user namespace. The child ends when
+/// the guardian ends.
 ///
 /// # Errors
 ///
@@ -52,7 +52,7 @@ pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
         mounts::unshare(libc::CLONE_NEWPID).map_err(failure_at("make a process namespace"))?;
     } else {
         mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(failure_at("make a user namespace"))?;
-        // Before an ordinary user sets a group, the kernel requires that it gives up its supplementary groups.
+        // Before a user without privileges sets a group, the kernel requires that it gives up its supplementary groups.
         for (file, text) in [
             ("/proc/self/setgroups", "deny".to_string()),
             ("/proc/self/uid_map", format!("{user} {user} 1")),

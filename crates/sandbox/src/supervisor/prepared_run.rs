@@ -58,8 +58,8 @@ impl PreparedRun {
 
     /// Forks into new namespaces, given by the flags.
     pub(super) fn fork_into(&self, namespaces: i32) -> io::Result<Fork> {
-        let alone = self.single_thread.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
-        mounts::fork_into(alone, namespaces)
+        let single_thread = self.single_thread.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
+        mounts::fork_into(single_thread, namespaces)
     }
 
     /// Forks into the same namespaces.

@@ -71,10 +71,10 @@ pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
 
 /// Returns how many bytes of a process were swapped out. If the main thread has ended, another thread reports it.
 fn read_swapped(pid: i32) -> u64 {
-    let of = |thread: i32| {
+    let swapped_bytes = |thread: i32| {
         machine::read_byte_count(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
     };
-    of(pid).or_else(|| list_threads(pid).find_map(of)).unwrap_or(0)
+    swapped_bytes(pid).or_else(|| list_threads(pid).find_map(swapped_bytes)).unwrap_or(0)
 }
 
 /// Returns the process `pid`, and with `tree` all other descendants of this process that are alive. Each is paired with

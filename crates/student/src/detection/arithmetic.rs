@@ -135,10 +135,10 @@ pub fn vector_between_particles<N: Number>([one, two]: &[PointMotion; 2], t: f64
 
 /// Returns the vector from the particle to the closest point of the edge's line at time `t`.
 pub fn vector_to_edge<N: Number>([one, two, three]: &[PointMotion; 3], t: f64) -> Vec2 {
-    let along: Vector<N> = subtract(position_at(three, t), position_at(two, t));
-    let beside = subtract(position_at(one, t), position_at(two, t));
-    let alpha = dot(beside, along) / dot(along, along);
-    round_vector(subtract(add_scaled(position_at(two, t), alpha, along), position_at(one, t)))
+    let edge: Vector<N> = subtract(position_at(three, t), position_at(two, t));
+    let from_end = subtract(position_at(one, t), position_at(two, t));
+    let alpha = dot(from_end, edge) / dot(edge, edge);
+    round_vector(subtract(add_scaled(position_at(two, t), alpha, edge), position_at(one, t)))
 }
 
 /// Returns the vector from the particle to the boundary of a half-plane at time `t`.

@@ -14,8 +14,8 @@ use crate::{Mistake, author::Student};
 /// second.
 pub fn alpha([one, two, three]: &[PointMotion; 3], t: f64) -> f64 {
     let to_particle = one.start + t * one.shift - two.start - t * two.shift;
-    let along = three.start + t * three.shift - two.start - t * two.shift;
-    to_particle.dot(&along) / along.dot(&along)
+    let edge = three.start + t * three.shift - two.start - t * two.shift;
+    to_particle.dot(&edge) / edge.dot(&edge)
 }
 
 /// Returns the vector from the particle to the closest point of the line at time `t`.
@@ -34,12 +34,12 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         Some(Mistake::ParticleEdgeContactAtEnd) => 1.0,
         _ => t,
     };
-    let along = three.start + t * three.shift - two.start - t * two.shift;
+    let edge = three.start + t * three.shift - two.start - t * two.shift;
     let alpha = match mistake {
         Some(Mistake::ParticleEdgeContactAlphaAtStart) => alpha(bodies, 0.0),
         Some(Mistake::ParticleEdgeContactAlphaAtEnd) => alpha(bodies, 1.0),
         Some(Mistake::ParticleEdgeContactAlphaMiddle) => 0.5,
-        Some(Mistake::ParticleEdgeContactAlphaOverLength) => alpha(bodies, t) * length(along),
+        Some(Mistake::ParticleEdgeContactAlphaOverLength) => alpha(bodies, t) * length(edge),
         Some(Mistake::ParticleEdgeContactFromOtherEnd) => 1.0 - alpha(bodies, t),
         Some(Mistake::ParticleEdgeContactNearestEnd) => f64::from(u8::from(alpha(bodies, t) > 0.5)),
         Some(Mistake::ParticleEdgeContactClamped) => alpha(bodies, t).clamp(0.0, 1.0),
@@ -48,9 +48,9 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         _ => alpha(bodies, t),
     };
     match mistake {
-        Some(Mistake::ParticleEdgeContactReversed) => -(two.position_at(t) + alpha * along - one.start - t * one.shift),
-        Some(Mistake::ParticleEdgeContactParticleStill) => two.position_at(t) + alpha * along - one.start,
-        Some(Mistake::ParticleEdgeContactParticleAdded) => two.position_at(t) + alpha * along - one.position_at(-t),
+        Some(Mistake::ParticleEdgeContactReversed) => -(two.position_at(t) + alpha * edge - one.start - t * one.shift),
+        Some(Mistake::ParticleEdgeContactParticleStill) => two.position_at(t) + alpha * edge - one.start,
+        Some(Mistake::ParticleEdgeContactParticleAdded) => two.position_at(t) + alpha * edge - one.position_at(-t),
         Some(Mistake::ParticleEdgeContactAlphaTimesEnd) => {
             two.position_at(t) + alpha * three.position_at(t) - one.position_at(t)
         }
@@ -60,9 +60,9 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         Some(Mistake::ExtendedPrecision) => arithmetic::vector_to_edge::<WideNumber>(bodies, t),
         Some(Mistake::FusedArithmetic) => arithmetic::vector_to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
-            let across = Vec2::new(-along.y, along.x);
-            (two.position_at(t) - one.position_at(t)).dot(&across) / along.dot(&along) * across
+            let across = Vec2::new(-edge.y, edge.x);
+            (two.position_at(t) - one.position_at(t)).dot(&across) / edge.dot(&edge) * across
         }
-        _ => two.position_at(t) + alpha * along - one.start - t * one.shift,
+        _ => two.position_at(t) + alpha * edge - one.start - t * one.shift,
     }
 }

@@ -3,8 +3,8 @@ use super::{Role, pair};
 use fosssim_mistakes::diagnose::{
     Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
     ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence,
-    Quantity, QuantityGuess, Ratios, StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions,
-    WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
+    Quantity, QuantityGuess, Ratios, RoundCountError, StageDetail, StageFault, StepRecord, Substitute, Weight,
+    WrongDecisions, WrongGeometric, WrongMotion, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
     WrongZones,
 };
 use fosssim_model::sim::PairKind;
@@ -69,7 +69,7 @@ fn faults() -> Vec<StageFault> {
         StageFault::Responses { kind: None, wrong: WrongResponses::Amount(changed()), in_rounds: false },
         StageFault::ManyContacts,
         StageFault::Unresolved { all: true },
-        StageFault::Rounds(WrongNumber::More),
+        StageFault::Rounds(RoundCountError::More),
         StageFault::HandedOver { quantity: Some(Quantity::Position), when: Some(LoopEnd::Settled), or_response: true },
         StageFault::HandedOver { quantity: None, when: None, or_response: false },
         StageFault::FirstRound,

@@ -121,9 +121,9 @@ impl Follower<'_> {
             (Decision::Miss { .. }, None) => own,
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
-                let known = self.expected_polynomials();
+                let expected = self.expected_polynomials();
                 let finding =
-                    contact::compare_hit(self.records.before, known.as_ref(), own, &actual, &mut self.judgement);
+                    contact::compare_hit(self.records.before, expected.as_ref(), own, &actual, &mut self.judgement);
                 finding.into_iter().for_each(|detail| self.add_finding(detail));
                 contact::logged_decision(actual).unwrap_or(Decision::Hit { time, normal })
             }
@@ -136,11 +136,11 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Round-off may change whether the pair collides, but not the place and the time of the collision.
-                    let (known, judged) = (self.expected_polynomials(), &mut self.judgement);
+                    let (expected, judged) = (self.expected_polynomials(), &mut self.judgement);
                     let finding = contact::compare_possible_hit(
                         self.context,
                         &self.records,
-                        known.as_ref(),
+                        expected.as_ref(),
                         pair,
                         &actual,
                         judged,

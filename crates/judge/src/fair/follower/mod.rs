@@ -175,13 +175,22 @@ impl<'a> Follower<'a> {
     /// again.
     fn compare_end_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
-        let tolerances = Tolerances::from_context(self.context, own, self.sensitivity.map(|known| &known.end));
-        let known = matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judgement.clone());
+        let tolerances = Tolerances::from_context(
+            self.context,
+            own,
+            self.sensitivity.map(|earlier_judgement| &earlier_judgement.end),
+        );
+        let earlier_judgement =
+            matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judgement.clone());
         contact::compare_states(&mut self.judgement, frame, own, &end.state, &tolerances);
-        let Some(known) = known.filter(|known| known.total() < self.judgement.total()) else { return };
+        let Some(earlier_judgement) =
+            earlier_judgement.filter(|earlier_judgement| earlier_judgement.total() < self.judgement.total())
+        else {
+            return;
+        };
         let explained = unapplied_pairs::explain(self.context, &tolerances, before, own, &end.state);
         if let Some((pairs, faulty)) = explained {
-            self.judgement = known;
+            self.judgement = earlier_judgement;
             pairs.into_iter().for_each(|detail| self.add_finding(detail));
             contact::compare_states(&mut self.judgement, frame, &faulty, &end.state, &tolerances);
         }

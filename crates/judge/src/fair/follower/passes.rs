@@ -15,8 +15,8 @@ impl<'a> Follower<'a> {
             return;
         }
         let before = if self.is_hybrid() { before } else { all };
-        let whole = before.is_multiple_of(per_pass) && all.is_multiple_of(per_pass) && before <= all;
-        self.logged_passes = whole.then(|| [before / per_pass, (all - before) / per_pass]);
+        let are_whole_passes = before.is_multiple_of(per_pass) && all.is_multiple_of(per_pass) && before <= all;
+        self.logged_passes = are_whole_passes.then(|| [before / per_pass, (all - before) / per_pass]);
     }
 
     /// Compares the numbers of passes.

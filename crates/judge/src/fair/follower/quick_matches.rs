@@ -93,7 +93,7 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };
-    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MAX_POLYNOMIALS]| {
+    let largest_errors = |lists: [&[BoundedValue<Magnitude>]; PairKind::MAX_POLYNOMIALS]| {
         lists.map(|list| {
             let norm: f64 = list.iter().map(|c| c.bound.0).sum();
             let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
@@ -103,18 +103,18 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
     PairKindMap::from_fn(|kind| match kind {
         PairKind::ParticleParticle => {
             let (overlap, approach) = particle_particle(x, d, x, d, radii);
-            of([&overlap, &approach, &[], &[]])
+            largest_errors([&overlap, &approach, &[], &[]])
         }
         PairKind::ParticleEdge => {
             let (pair, right_cubic) = particle_edge_and_right_cubic(x, d, &EdgeMotions::new(x, d, x, d), radii);
             let [a, b, c, d, e, f] = pair.approach;
             let approach = [a, b, c, right_cubic, d, e, f];
-            of([&pair.distance, &pair.beyond_first, &pair.before_second, &approach])
+            largest_errors([&pair.distance, &pair.beyond_first, &pair.before_second, &approach])
         }
         PairKind::ParticleHalfPlane => {
             let normal = both(normal, normal);
             let (overlap, approach) = particle_half_plane(x, d, radii, x, normal, normal.dot(normal));
-            of([&overlap, &approach, &[], &[]])
+            largest_errors([&overlap, &approach, &[], &[]])
         }
     })
 }

@@ -3,7 +3,8 @@ use crate::{
     fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
     samples::{
-        BOUNCE_SCENE, ZONES_SCENE, change_trace, judge_by_both, replace_polynomials, scene, simulate, write_frames,
+        BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, judge_by_both, replace_polynomials, scene, simulate,
+        write_frames,
     },
 };
 use fosssim_model::{
@@ -172,8 +173,8 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
-        let reference = change_trace(&scene, |_| {});
-        let forged = change_trace(&scene, |frames| {
+        let reference = changed_reference_trace(&scene, |_| {});
+        let forged = changed_reference_trace(&scene, |frames| {
             for frame in frames {
                 replace_polynomials(frame, |index, list| {
                     if index == 0 {
@@ -195,7 +196,7 @@ fn one_factor_does_not_vouch_for_empty_logs() {
 #[test]
 fn a_large_factor_does_not_vouch_for_garbage() {
     for (name, scene) in assets() {
-        let forged = change_trace(&scene, |frames| {
+        let forged = changed_reference_trace(&scene, |frames| {
             for frame in frames {
                 replace_polynomials(frame, |index, list| {
                     if index == 0 {
@@ -215,7 +216,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
 fn factors_must_be_positive_numbers() {
     let scene = scene(BOUNCE_SCENE);
     for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
-        let forged = change_trace(&scene, |frames| {
+        let forged = changed_reference_trace(&scene, |frames| {
             for frame in frames {
                 replace_polynomials(frame, |_, list| {
                     Polynomial::trimmed(&list.iter().map(|c| factor * c).collect::<Vec<_>>()).coefficients().to_vec()
@@ -237,14 +238,14 @@ const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-eul
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
     let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, _| vec![]));
-    let judged = fair(&scene, &change_trace(&scene, |frames| empty(frames)));
+    let judged = fair(&scene, &changed_reference_trace(&scene, |frames| empty(frames)));
     let first = judged.findings.first_divergence.expect("the first empty polynomial");
     assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
     assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
     // The end of the fourth step is wrong as well, but the empty polynomial of the second step comes first.
     let judged = fair(
         &scene,
-        &change_trace(&scene, |frames| {
+        &changed_reference_trace(&scene, |frames| {
             empty(&mut frames[3..5]);
             frames[8].state.positions[0] += 0.25;
         }),
@@ -268,7 +269,7 @@ fn steps_that_lead_nowhere_are_never_right() {
                 // A single ball may be anywhere in the neighborhood.
                 continue;
             }
-            let forged = change_trace(&scene, |frames| {
+            let forged = changed_reference_trace(&scene, |frames| {
                 for frame in &mut frames[1..] {
                     frame.state.positions.fill(value);
                     frame.state.velocities.fill(value);
@@ -291,9 +292,9 @@ fn a_lost_record_spoils_two_steps() {
         <particle m="1" px="0" py="0" vx="1" vy="2" fixed="0" radius="0.1"/></scene>"#,
     );
     for value in [f64::NAN, f64::INFINITY, 1e200] {
-        let forged = change_trace(&scene, |frames| frames[5].state.velocities[1] = value);
+        let forged = changed_reference_trace(&scene, |frames| frames[5].state.velocities[1] = value);
         assert_eq!(fair(&scene, &forged).findings.wrong_steps, 2, "{value}");
-        let forged = change_trace(&scene, |frames| {
+        let forged = changed_reference_trace(&scene, |frames| {
             for frame in &mut frames[5..] {
                 frame.state.positions.fill(value);
                 frame.state.velocities.fill(value);
@@ -312,7 +313,7 @@ fn the_mid_record_logs_the_passes_before_it() {
         let steps = own[1..].chunks_exact(2);
         let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
         let logging = steps.clone().filter(|step| is_hybrid && !step[0].polynomials.is_empty()).count();
-        let emptied = change_trace(&scene, |frames| {
+        let emptied = changed_reference_trace(&scene, |frames| {
             frames[1..]
                 .iter_mut()
                 .step_by(2)
@@ -321,7 +322,7 @@ fn the_mid_record_logs_the_passes_before_it() {
         });
         assert_eq!(wrong_steps(&emptied) as usize, logging, "{name}, without passes");
         let longer = steps.filter(|step| step[0].polynomials.len() < step[1].polynomials.len()).count();
-        let filled = change_trace(&scene, |frames| {
+        let filled = changed_reference_trace(&scene, |frames| {
             for step in frames[1..].chunks_exact_mut(2) {
                 step[0].polynomials = step[1].polynomials.clone();
             }
@@ -402,8 +403,8 @@ fn moved_bodies_may_not_be_skipped() {
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context: Context::new(&scene), is_moved, steps: vec![vec![]] };
         simulate(&scene, &mut moved);
-        let reference = change_trace(&scene, |_| {});
-        let forged = change_trace(&scene, |frames| {
+        let reference = changed_reference_trace(&scene, |_| {});
+        let forged = changed_reference_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let left_out = &moved.steps[number.div_ceil(2)];
                 replace_polynomials(frame, |index, list| if left_out[index] { vec![] } else { list.to_vec() });
@@ -472,7 +473,7 @@ fn formulas_are_reported_in_the_first_pass_of_a_hybrid_step() {
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
         simulate(&scene, &mut moved);
         // These are the polynomials of pairs that have collided before, in the first pass of their step.
-        let trace = change_trace(&scene, |frames| {
+        let trace = changed_reference_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];
                 replace_polynomials(frame, |index, list| {
@@ -502,7 +503,7 @@ fn fixed_particles_are_not_moved_by_a_response() {
     );
     let frames = simulate(&scene, ());
     assert!(!frames[2].impulses.is_empty() && frames[2].polynomials.get(3).is_empty());
-    let forged = change_trace(&scene, |frames| {
+    let forged = changed_reference_trace(&scene, |frames| {
         for frame in &mut frames[1..3] {
             replace_polynomials(frame, |index, list| if index == 3 { vec![0.25] } else { list.to_vec() });
         }
@@ -564,7 +565,7 @@ fn the_initial_record_has_no_lists() {
     let frames = simulate(&scene, ());
     let later = frames.iter().find(|frame| !frame.impulses.is_empty()).expect("a contact");
     for (impulses, polynomials) in [(true, false), (false, true), (true, true)] {
-        let forged = change_trace(&scene, |frames| {
+        let forged = changed_reference_trace(&scene, |frames| {
             if impulses {
                 frames[0].impulses.clone_from(&later.impulses);
             }

@@ -1,7 +1,7 @@
 //! Judges traces with numbers that no simulation should contain. Judging must end, with a verdict.
 use crate::{
     fair::FairVerdict,
-    samples::{BOUNCE_SCENE, ZONES_SCENE, change_trace, judge_by_both, scene},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, judge_by_both, scene},
 };
 use fosssim_model::trace::Frame;
 
@@ -21,12 +21,12 @@ fn blown_up(frames: &mut [Frame], from: usize, to: usize, value: f64) {
 fn states_of_any_size_are_judged_without_a_panic() {
     for text in [BOUNCE_SCENE, ZONES_SCENE] {
         let scene = scene(text);
-        let records = change_trace(&scene, |_| {}).len();
+        let records = changed_reference_trace(&scene, |_| {}).len();
         assert!(records > 0);
         for value in EXTREMES {
             for from in 0..5 {
                 for to in from + 1..=5 {
-                    let trace = change_trace(&scene, |frames| blown_up(frames, from, to, value));
+                    let trace = changed_reference_trace(&scene, |frames| blown_up(frames, from, to, value));
                     let outcome = judge_by_both(&scene, &trace);
                     let fair = outcome.fair.expect("the fair rules were asked");
                     assert_eq!(fair.verdict, FairVerdict::Rejected, "{value} in {from}..{to}");

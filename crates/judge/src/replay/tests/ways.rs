@@ -2,7 +2,7 @@
 use crate::{
     options::Options,
     replay,
-    samples::{BOUNCE_SCENE, ZONES_SCENE, change_trace, replace_polynomials, scene},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, replace_polynomials, scene},
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
@@ -101,11 +101,11 @@ fn both_ways_say_the_same_to_the_last_field() {
     for text in [BOUNCE_SCENE, ZONES_SCENE, LARGE, SPIN] {
         let scene = scene(text);
         for (number, change) in changes.into_iter().enumerate() {
-            let trace = change_trace(&scene, change);
+            let trace = changed_reference_trace(&scene, change);
             let [quickly, slowly] = judged(&scene, &trace);
             assert!(quickly == slowly, "change {number}: {quickly}\n{slowly}");
         }
-        let mut cut = change_trace(&scene, |_| {});
+        let mut cut = changed_reference_trace(&scene, |_| {});
         cut.truncate(cut.len() - 5);
         let [quickly, slowly] = judged(&scene, &cut);
         assert!(quickly == slowly, "{quickly}\n{slowly}");
@@ -125,7 +125,7 @@ fn collisions_of_the_root_finder_alone_are_not_missed() {
             vy="-0.6812726629071891" fixed="0" radius="14.158818287407597"/></scene>"#,
     );
     let factors = [0.751_233_916_835_469, 0.962_163_694_423_374_3];
-    let trace = change_trace(&scene, |frames| {
+    let trace = changed_reference_trace(&scene, |frames| {
         let scaled = |index: usize, own: &[f64]| own.iter().map(|c| factors[index % 2] * c).collect();
         frames.iter_mut().for_each(|frame| replace_polynomials(frame, scaled));
     });
@@ -152,7 +152,7 @@ fn audited_searches_judge_the_same() {
     ];
     for scene in [BOUNCE_SCENE, ZONES_SCENE, SPIN].map(scene) {
         for change in changes {
-            let trace = change_trace(&scene, change);
+            let trace = changed_reference_trace(&scene, change);
             let [needed, audited] = [RootSearch::OnDemand, RootSearch::Audit].map(|root_search| {
                 let options = Options { uses_fair_rules: true, threads: 1, root_search, ..Options::default() };
                 let mut outcome = replay::judge(&scene, &trace[..], &options, &mut ());
@@ -167,7 +167,7 @@ fn audited_searches_judge_the_same() {
 #[test]
 fn steps_in_which_the_original_rejects_itself_are_found() {
     let scene = scene(LARGE);
-    let trace = change_trace(&scene, |_| {});
+    let trace = changed_reference_trace(&scene, |_| {});
     let outcome = replay::judge(&scene, &trace[..], &Options::default(), &mut ());
     assert!(outcome.parity.findings.counts.total() > 0, "{outcome:?}");
 }

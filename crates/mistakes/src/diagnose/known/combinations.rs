@@ -81,23 +81,23 @@ impl<'a> Search<'a> {
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // The rows that were as good as each row of the set when it was added.
-        let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
+        let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.reproduced_share(&set);
         while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
             let (row, progress, others) = self.find_next_row(&set, best)?;
             set.push(row);
             best = progress;
-            alike.push(others);
+            equivalent_rows.push(others);
         }
         if set.len() < 2 || best < self.full_share() || !self.needs_all_rows(&set) {
             return None;
         }
         let samples = self.count_steps_if_confirmed(&set)?;
         let is_variant = |row: &&'static Row| row.kind == RowKind::Variant;
-        if set.iter().chain(alike.last().into_iter().flatten()).any(is_variant) {
+        if set.iter().chain(equivalent_rows.last().into_iter().flatten()).any(is_variant) {
             return None;
         }
-        for (index, others) in alike.iter_mut().enumerate() {
+        for (index, others) in equivalent_rows.iter_mut().enumerate() {
             let with = |other: &'static Row| {
                 let mut set = set.clone();
                 set[index] = other;
@@ -108,7 +108,7 @@ impl<'a> Search<'a> {
                 !is_empty_stage(set[index]) && (is_last || self.reproduced_share(&with(other)) >= self.full_share())
             });
         }
-        Some(RowCombination { rows: set, equivalent_rows: alike, rival_rows: Vec::new(), samples })
+        Some(RowCombination { rows: set, equivalent_rows, rival_rows: Vec::new(), samples })
     }
 
     /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
@@ -132,15 +132,15 @@ impl<'a> Search<'a> {
             });
         }
         let with = |set: &Vec<&'static Row>, row| set.iter().copied().chain([row]).collect();
-        let beside = |size: usize| {
+        let next_to_sets = |size: usize| {
             let sets = empty.iter().filter(move |set| set.len() == size);
             sets.flat_map(|set| rows.iter().filter(|row| !is_empty_stage(row)).map(|row| with(set, row)))
         };
         let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
             rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
         });
-        self.find_unique_set(beside(1))
-            .or_else(|| self.find_unique_set(beside(2)))
+        self.find_unique_set(next_to_sets(1))
+            .or_else(|| self.find_unique_set(next_to_sets(2)))
             .or_else(|| self.find_unique_set(of_two))
     }
 
@@ -160,8 +160,8 @@ impl<'a> Search<'a> {
         let is_in = |set: &[&Row], row: &Row| set.iter().any(|other| other.id == row.id);
         let instead = |own: &&'static Row| -> Vec<&'static Row> {
             let others: Vec<&Row> = first.iter().copied().filter(|row| row.id != own.id).collect();
-            let alike = found[1..].iter().filter(|set| others.iter().all(|row| is_in(set, row)));
-            alike.flatten().filter(|row| !is_in(&first, row)).copied().collect()
+            let other_sets = found[1..].iter().filter(|set| others.iter().all(|row| is_in(set, row)));
+            other_sets.flatten().filter(|row| !is_in(&first, row)).copied().collect()
         };
         let same_as: Vec<Vec<&'static Row>> = first.iter().map(instead).collect();
         let is_unique = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();

@@ -38,9 +38,9 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Returns whether more than `most` polynomials were computed, or whether no work is left.
-    pub(super) fn exceeds_limit(&self, most: u64) -> bool {
-        self.used_work.get() > most || self.remaining_work.get() == 0
+    /// Returns whether more than `max_polynomials` polynomials were computed, or whether no work is left.
+    pub(super) fn exceeds_limit(&self, max_polynomials: u64) -> bool {
+        self.used_work.get() > max_polynomials || self.remaining_work.get() == 0
     }
 
     /// Resets the count of polynomials.

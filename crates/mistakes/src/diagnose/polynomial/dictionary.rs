@@ -72,8 +72,8 @@ impl Dictionary {
     /// Returns the two letters of a product, as separate products, or `None` for products of another length.
     pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
         let &[one, two] = &self.products[product].letters[..] else { return None };
-        let alone = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
-        Some([alone(one)?, alone(two)?])
+        let find_letter = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
+        Some([find_letter(one)?, find_letter(two)?])
     }
 
     /// Returns the names of a product's letters, such as `e` and `h`.

@@ -122,7 +122,7 @@ impl WrongPolynomial<'_> {
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
-    /// Returns the explanation of this polynomial alone, which must have a guess.
+    /// Explains this polynomial without the others. It must have at least one candidate.
     fn explanation(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.complete_guesses());
         let first = list_claims(self.study.subject, best).swap_remove(0);
@@ -191,9 +191,9 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
     };
     let makes = |row: &&Row| {
         study.cases.iter().all(|case| {
-            let made = body_polynomials(Student::new(Some(row.mistake)), &case.sample.motion);
-            let same = |made: &Vec<f64>| polynomial_matches(made, case.logged, &ROUND_OFF);
-            made.get(number).is_some_and(same)
+            let predicted = body_polynomials(Student::new(Some(row.mistake)), &case.sample.motion);
+            let same = |predicted: &Vec<f64>| polynomial_matches(predicted, case.logged, &ROUND_OFF);
+            predicted.get(number).is_some_and(same)
         })
     };
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
@@ -223,7 +223,7 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 
 /// Returns the guesses that the student misunderstood something, such as the end positions.
 fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
-    let of = |named: &NamedEdit| {
+    let candidate = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;
         let predict = |case: &Case| named.polynomial(study.subject, &case.inputs).unwrap_or_default();
         let (reproduced, scaled) = study.count_predicted(predict)?;
@@ -235,7 +235,7 @@ fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
             reproduced,
         })
     };
-    NAMED_EDITS.iter().filter_map(of).collect()
+    NAMED_EDITS.iter().filter_map(candidate).collect()
 }
 
 /// Returns the explanation of a polynomial that is right except for more round-off than the rules allow, if no guess is
@@ -327,11 +327,11 @@ fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
     }
 }
 
-/// Returns the first `most` distinct values, in order.
-fn take_distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
+/// Returns the first `max_values` distinct values, in order.
+fn take_distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, max_values: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {
-        if !list.contains(&one) && list.len() < most {
+        if !list.contains(&one) && list.len() < max_values {
             list.push(one);
         }
     }

@@ -288,9 +288,9 @@ fn snap_weights(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
         .iter()
         .map(|&(product, weight)| {
             let steps = weight / WEIGHT_STEP;
-            let whole = steps.round();
-            let is_whole = (steps - whole).abs() <= SNAP_DISTANCE && whole != 0.0 && weight.abs() <= MAX_WEIGHT;
-            is_whole.then_some((product, whole * WEIGHT_STEP))
+            let rounded = steps.round();
+            let is_whole = (steps - rounded).abs() <= SNAP_DISTANCE && rounded != 0.0 && weight.abs() <= MAX_WEIGHT;
+            is_whole.then_some((product, rounded * WEIGHT_STEP))
         })
         .collect()
 }

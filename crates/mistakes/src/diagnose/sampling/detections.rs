@@ -134,17 +134,18 @@ fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Op
     if fits(&full) {
         return Some(full);
     }
-    let there: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
-    // For kinds without a pair, there is only one choice.
+    let present_kinds: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
+    // Kinds without pairs log nothing, so their number of polynomials is not varied.
     let mut choices = vec![full];
-    for &kind in &there {
+    for &kind in &present_kinds {
         let with = |sizes: PairKindMap<usize>, size| {
             PairKindMap::from_fn(|other| if other == kind { size } else { sizes[other] })
         };
         choices = choices.into_iter().flat_map(|sizes| (0..=full[kind]).map(move |size| with(sizes, size))).collect();
     }
-    let changes = |sizes: &PairKindMap<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
-    let is_empty = |sizes: &PairKindMap<usize>| there.iter().any(|kind| sizes[*kind] == 0);
+    let changes =
+        |sizes: &PairKindMap<usize>| present_kinds.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
+    let is_empty = |sizes: &PairKindMap<usize>| present_kinds.iter().any(|kind| sizes[*kind] == 0);
     // The fewest changes come first, because a student may forget a part of one detection, but rarely parts of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);

@@ -27,7 +27,7 @@ const MAX_SIMILAR_RIGHT: u32 = 3;
 /// The number of wrong steps that are tried first.
 const PROBE_STEPS: usize = 8;
 /// The maximum memory of kept steps, in bytes.
-const MAX_MEMORY: usize = 24 << 20;
+const MAX_MEMORY_BYTES: usize = 24 << 20;
 
 /// A kept step.
 #[derive(Debug)]
@@ -146,14 +146,14 @@ impl Scanner {
         let count = self.signature_counts.entry((difference.is_some(), signature)).or_default();
         let number = *count;
         *count += 1;
-        let wanted = if difference.is_some() {
+        let is_kept = if difference.is_some() {
             self.scan.wrong_steps.len() < MAX_WRONG
                 && (number < MAX_SIMILAR_WRONG || number.is_multiple_of(SIMILAR_SAMPLING_RATE))
         } else {
             self.scan.right_steps.len() < MAX_RIGHT && number < MAX_SIMILAR_RIGHT
         };
         // The first wrong step is always kept, so that there is something to explain.
-        if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong_steps.is_empty()) {
+        if !is_kept || (self.memory > MAX_MEMORY_BYTES && !self.scan.wrong_steps.is_empty()) {
             return;
         }
         let context = difference.map_or(StepContext::default(), |_| {

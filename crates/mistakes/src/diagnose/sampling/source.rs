@@ -10,7 +10,7 @@ use fosssim_num::tolerances::FIRST_RECORD_ERROR;
 
 /// The number of records at the beginning of the trace that are always kept.
 const OPENING_RECORDS: usize = 25;
-const OPENING_MEMORY: usize = 4 << 20;
+const MAX_OPENING_BYTES: usize = 4 << 20;
 
 /// The records of a trace.
 pub struct Source<'a> {
@@ -80,7 +80,7 @@ impl Outline {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
                 self.padded_records += u64::from(!frame.is_unchanged);
-                if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
+                if self.opening.len() < OPENING_RECORDS && self.opening_memory < MAX_OPENING_BYTES {
                     let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.memory_size();
                     self.opening.push(logged);

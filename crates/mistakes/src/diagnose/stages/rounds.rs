@@ -3,7 +3,7 @@
 //! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
 use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, new_observation, responses::Responses};
 use crate::diagnose::{
-    LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
+    LoopEnd, Quantity, RoundCountError, StageDetail, StageFault, WrongGeometric,
     sampling::{ROUND_OFF, pair_particles},
 };
 use fosssim_model::{
@@ -63,9 +63,9 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
         return None;
     }
     let number = match (sort(Ordering::Less), sort(Ordering::Greater)) {
-        (_, 0) => WrongNumber::Fewer,
-        (0, _) => WrongNumber::More,
-        _ => WrongNumber::Other,
+        (_, 0) => RoundCountError::Fewer,
+        (0, _) => RoundCountError::More,
+        _ => RoundCountError::Other,
     };
     let mut details: Vec<StageDetail> = Vec::new();
     for &(expected, actual) in &seen {

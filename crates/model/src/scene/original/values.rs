@@ -36,10 +36,10 @@ pub(super) fn parse_boolean(text: &[u8]) -> Option<bool> {
 
 /// Converts a scalar to a 32-bit integer by rounding toward zero. A value that does not fit gives the smallest integer.
 pub(super) fn truncate(value: f64) -> i32 {
-    let whole = value.trunc();
-    if whole >= f64::from(i32::MIN) && whole <= f64::from(i32::MAX) {
+    let truncated = value.trunc();
+    if truncated >= f64::from(i32::MIN) && truncated <= f64::from(i32::MAX) {
         #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
-        let integer = whole as i32;
+        let integer = truncated as i32;
         integer
     } else {
         i32::MIN

@@ -109,8 +109,8 @@ impl Handler {
     }
 
     /// Sets the maximum work over all steps.
-    pub fn limit_work(&mut self, most: u64) {
-        self.detector.limit_work(most);
+    pub fn limit_work(&mut self, max_work: u64) {
+        self.detector.limit_work(max_work);
     }
 
     /// Computes the following pairs individually, without lanes.

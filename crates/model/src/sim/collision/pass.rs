@@ -80,8 +80,8 @@ impl Detector {
     }
 
     /// Limits the work of all steps together.
-    pub fn limit_work(&mut self, most: u64) {
-        self.max_work = most;
+    pub fn limit_work(&mut self, max_work: u64) {
+        self.max_work = max_work;
     }
 
     /// Returns the counts of root searches, over all steps.

@@ -111,14 +111,14 @@ impl Forces {
 /// act. The penalty force, if there is one, comes last.
 pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
     let (bodies, Forces { list, penalty }) = (Bodies::new(scene), Forces::new(scene));
-    let alone = list.into_iter().map(|force| Forces { list: vec![force], penalty: None });
+    let single_forces = list.into_iter().map(|force| Forces { list: vec![force], penalty: None });
     let last = penalty.map(|penalty| Forces { list: Vec::new(), penalty: Some(penalty) });
     let gradient = |mut forces: Forces| {
         let mut gradient = vec![0.0; x.len()];
         forces.fill_gradient(&bodies, x, v, &mut gradient);
         gradient
     };
-    alone.chain(last).map(gradient).collect()
+    single_forces.chain(last).map(gradient).collect()
 }
 
 /// Computes `array[index] += v`.

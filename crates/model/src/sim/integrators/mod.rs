@@ -95,8 +95,8 @@ impl Stepper {
     }
 
     /// Sets the maximum work over all steps.
-    pub fn limit_work(&mut self, most: u64) {
-        self.newton_work.limit = most;
+    pub fn limit_work(&mut self, max_work: u64) {
+        self.newton_work.limit = max_work;
     }
 
     /// Returns whether the method needs the Hessians of the forces.

@@ -15,7 +15,7 @@ fn a_record_may_hold_what_the_scenes_passes_log() {
     let hybrid = |rounds: u32| format!(r#"type="hybrid" maxiters="{rounds}" k="0""#);
     assert_eq!(memory(20, r#"type="continuous-time""#), MIN_RECORD_BYTES);
     assert_eq!(memory(20, &hybrid(10)), MIN_RECORD_BYTES);
-    assert_eq!(memory(20, &hybrid(10_000)), 20 * 19 * (10_000 + 2 + 60) * POLYNOMIAL_MEMORY);
+    assert_eq!(memory(20, &hybrid(10_000)), 20 * 19 * (10_000 + 2 + 60) * MAX_POLYNOMIAL_BYTES);
     assert_eq!(memory(1000, &hybrid(10_000)), MAX_RECORD_BYTES);
 }
 

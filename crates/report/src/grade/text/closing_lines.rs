@@ -102,8 +102,8 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
 /// Describes how many scenes of a group are accepted, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
 fn describe_share(group: &GroupGrade) -> String {
     let all = group.scenes.len();
-    let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();
-    let (accepted, not_run) = (of(Verdict::Accepted), of(Verdict::NotRun));
+    let count = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();
+    let (accepted, not_run) = (count(Verdict::Accepted), count(Verdict::NotRun));
     if accepted == all {
         return match all {
             1 => "its only scene accepted".to_owned(),

@@ -86,7 +86,7 @@ impl Text<'_> {
             let _ = writeln!(text, "{}", self.verdict(grade));
         }
         *text += &closing_lines::render(self, grade, details.is_empty());
-        text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::text(small, self.style))));
+        text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::render_text(small, self.style))));
         text.push('\n');
     }
 
@@ -177,10 +177,10 @@ const fn verdict_style(verdict: Verdict) -> TextStyle {
 }
 
 /// Returns lines of a program's output. Each has a mark, so that it cannot be mistaken for a line of the report.
-fn quote_output(output: &str, most: usize) -> String {
+fn quote_output(output: &str, max_lines: usize) -> String {
     let output = clean_output(output);
-    let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
-    if output.lines().count() > most {
+    let mut lines: Vec<String> = output.lines().take(max_lines).map(|line| format!("      | {line}")).collect();
+    if output.lines().count() > max_lines {
         lines.push("      | ...".to_owned());
     }
     lines.join("\n")

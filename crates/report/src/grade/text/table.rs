@@ -17,16 +17,16 @@ struct TextColumn {
 /// table is too wide, columns are left out: first the time, then the groups, which are replaced by the total number of
 /// accepted scenes.
 pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
-    let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
+    let column = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
         TextColumn { cells, is_right_aligned: right }
     };
-    let name = of("submission", false, &|grade| shorten_name(&to_one_line(&grade.submission)));
-    let score = of("points", true, &|grade| format_optional_points(grade.points));
-    let verdict = of("verdict", false, &|grade| grade.verdict.name().to_owned());
-    let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
+    let name = column("submission", false, &|grade| shorten_name(&to_one_line(&grade.submission)));
+    let score = column("points", true, &|grade| format_optional_points(grade.points));
+    let verdict = column("verdict", false, &|grade| grade.verdict.name().to_owned());
+    let seconds = column("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
-        of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
+        column(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
     };
     let before = since("before", &|changes| format_optional_points(changes.points));
     let right = since("right", &|changes| format!("+{}", changes.newly_right.len()));
@@ -37,12 +37,12 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
             let name = if is_tests { names[number].trim_end_matches(GROUP_SUFFIX) } else { names[number] };
-            of(&shorten_name(&to_one_line(name)), false, &|grade| {
+            column(&shorten_name(&to_one_line(name)), false, &|grade| {
                 grade.groups.get(number).map_or_else(String::new, group_cell)
             })
         })
         .collect();
-    let scenes = of("scenes", true, &|grade| {
+    let scenes = column("scenes", true, &|grade| {
         let accepted = grade.scenes().filter(|scene| scene.verdict.is_accepted()).count();
         format!("{accepted}/{}", grade.scenes().count())
     });
@@ -51,11 +51,11 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
         base.extend([&before, &right, &broke]);
     }
     let base = || base.iter().copied();
-    let whole: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
+    let full: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
     let without_time: Vec<&TextColumn> = base().chain(&groups).collect();
     let short: Vec<&TextColumn> = base().chain([&scenes]).collect();
     let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total_width(columns) <= width);
-    let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
+    let chosen = [full, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
     render_rows(&chosen, grades, style)
 }
 

@@ -227,9 +227,9 @@ class Drawing extends Motion {
     const apart = this.difference();
     this.magnified.hidden = !(apart && apart.most > 0);
     if (this.magnified.hidden) return;
-    const wish = (0.12 * this.extent) / this.zoom / apart.most,
-      ten = 10 ** Math.floor(Math.log10(wish));
-    const auto = Math.max(1, ten * (wish >= 5 * ten ? 5 : wish >= 2 * ten ? 2 : 1));
+    const wantedFactor = (0.12 * this.extent) / this.zoom / apart.most,
+      ten = 10 ** Math.floor(Math.log10(wantedFactor));
+    const auto = Math.max(1, ten * (wantedFactor >= 5 * ten ? 5 : wantedFactor >= 2 * ten ? 2 : 1));
     const factor = this.magnify === null ? auto : this.magnify;
     this.factor.value = Math.log10(factor);
     this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : short(factor)} times (largest difference ${short(apart.most)})`;

@@ -82,7 +82,7 @@ class Motion {
     if (this.step >= this.data.last) this.go(this.data.first);
     const turn = (now) => {
       // With reduced motion, play one step per second.
-      const rate = calm.matches ? 1 : this.speed * Math.max(4, Math.min(60, 1 / this.data.dt));
+      const rate = prefersReducedMotion.matches ? 1 : this.speed * Math.max(4, Math.min(60, 1 / this.data.dt));
       const gone = last === null ? 0 : ((now - last) / 1000) * rate;
       if (last === null || gone >= 1) {
         last = now;

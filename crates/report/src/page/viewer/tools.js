@@ -29,7 +29,7 @@ const hex = (value) => {
 };
 
 const times = (count) => (count === 1 ? "once" : `${count} times`);
-const calm = matchMedia("(prefers-reduced-motion: reduce)");
+const prefersReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 async function unpack(id) {
   const block = document.getElementById(id);

@@ -481,10 +481,10 @@ function show(article, row) {
   );
   (row.cells ? row.cells[row.cells.length - 1] : row.firstElementChild).append(" ", button);
 }
-// Follows an address to a card, or to a moment of a scene.
+// Opens the card, or the scene and step, that the fragment of the URL names.
 async function visit(articles) {
-  const wish = new URLSearchParams(location.hash.slice(1));
-  const moment = articles.find((article) => article.dataset.scene === wish.get("scene"));
+  const fragment = new URLSearchParams(location.hash.slice(1));
+  const moment = articles.find((article) => article.dataset.scene === fragment.get("scene"));
   const named = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
   const first =
     named ||
@@ -492,9 +492,9 @@ async function visit(articles) {
     articles.find((article) => article.querySelector(".stage"));
   const viewer = first && (await unfold(first));
   if (viewer && moment) {
-    if (wish.has("step")) viewer.go(Number(wish.get("step")));
-    if (wish.has("t")) viewer.t = Math.max(0, Math.min(1, Number(wish.get("t")) || 0));
-    if (/^p[peh]:\d+,\d+$/.test(wish.get("pair") || "")) viewer.selected = { pair: wish.get("pair") };
+    if (fragment.has("step")) viewer.go(Number(fragment.get("step")));
+    if (fragment.has("t")) viewer.t = Math.max(0, Math.min(1, Number(fragment.get("t")) || 0));
+    if (/^p[peh]:\d+,\d+$/.test(fragment.get("pair") || "")) viewer.selected = { pair: fragment.get("pair") };
     viewer.look();
   }
   if (named) named.scrollIntoView();
@@ -504,10 +504,10 @@ function search(articles) {
   const scenes = articles.filter((one) => one.querySelector("details.scene") && !one.id.startsWith("small-"));
   if (scenes.length < 8) return;
   const count = el("output", { class: "hint" });
-  const wish = el("input", {
+  const filterInput = el("input", {
     type: "search",
     oninput: () => {
-      const wanted = wish.value.trim().toLowerCase();
+      const wanted = filterInput.value.trim().toLowerCase();
       for (const scene of scenes) scene.hidden = !scene.textContent.toLowerCase().includes(wanted);
       for (const alike of document.querySelectorAll("details.alike")) {
         alike.open = wanted !== "";
@@ -516,7 +516,7 @@ function search(articles) {
       count.textContent = wanted && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
     },
   });
-  scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Filter ", wish), " ", count));
+  scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Filter ", filterInput), " ", count));
 }
 async function start() {
   const articles = [...document.querySelectorAll("article.case")];

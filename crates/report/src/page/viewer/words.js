@@ -368,7 +368,7 @@ class Words extends Drawing {
     const compared = ([name, right, own, ref]) => {
       const [base, marked] =
         number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
-      // Each row has one notation.
+      // All numbers of a row have the same number of decimals, so that their digits line up.
       const digits = typeof base === "string" ? base.replace(/^.*\.|e.*$/g, "").length : 0;
       const plain = (value) =>
         !number(value)

@@ -96,7 +96,7 @@ pub(crate) fn describe_search_area(explanation: &Explanation) -> Option<&'static
 }
 
 /// Returns whether an explanation says more than that something is wrong.
-pub(crate) fn is_known(explanation: &Explanation) -> bool {
+pub(crate) fn is_specific(explanation: &Explanation) -> bool {
     !matches!(explanation.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Nothing, .. })
 }
 

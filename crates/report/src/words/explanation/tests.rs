@@ -2,8 +2,8 @@
 use super::*;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
-    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail,
-    StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError,
+    StageDetail, StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion,
     WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
@@ -104,7 +104,7 @@ fn faults() -> Vec<StageFault> {
     }
     faults.extend(changes().map(StageFault::Change));
     faults.extend(WrongPositions::ALL.map(StageFault::ZonePositions));
-    faults.extend(WrongNumber::ALL.map(StageFault::Rounds));
+    faults.extend(RoundCountError::ALL.map(StageFault::Rounds));
     for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
         let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
         faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when, or_response: false }));

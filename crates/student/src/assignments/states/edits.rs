@@ -13,15 +13,15 @@ impl From<Edit> for StepMistake {
     }
 }
 
-fn new_row(of: &'static TermRow, slip: Slip) -> MistakeRow<StepMistake> {
+fn new_row(term_row: &'static TermRow, slip: Slip) -> MistakeRow<StepMistake> {
     let kept = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
     MistakeRow {
-        mistake: StepMistake::Edit(Edit { term: of.term, slip }),
-        id: kept(format!("{}-{}", of.id, slip.id())),
+        mistake: StepMistake::Edit(Edit { term: term_row.term, slip }),
+        id: kept(format!("{}-{}", term_row.id, slip.id())),
         kind: RowKind::Wrong,
-        area: of.area(),
-        summary: kept(format!("{} {}.", of.subject, slip.predicate(of))),
-        term: kept(slip.exact_form(of)),
+        area: term_row.area(),
+        summary: kept(format!("{} {}.", term_row.subject, slip.predicate(term_row))),
+        term: kept(slip.exact_form(term_row)),
     }
 }
 

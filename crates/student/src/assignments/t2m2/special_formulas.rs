@@ -17,9 +17,9 @@ pub(super) fn overlap_constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
 /// Returns the approach of the particle to the point of the edge that was closest at the start, and the vector between
 /// them.
 fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
-    let along = inputs.x32();
-    let alpha = inputs.x12().dot(along) / along.dot(along);
-    (inputs.d12() - alpha * inputs.d32(), alpha * along - inputs.x12())
+    let edge = inputs.x32();
+    let alpha = inputs.x12().dot(edge) / edge.dot(edge);
+    (inputs.d12() - alpha * inputs.d32(), alpha * edge - inputs.x12())
 }
 
 /// Returns the overlap without the edge's squared length as a factor of the radii.

@@ -219,8 +219,8 @@ fn store_edges<S: Simd>(
     let ends = search_terminates(&distance) & search_terminates(&approach);
     let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
     Lanes::store_by_lane(&fours, stride, rows);
-    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).select_or_zero(1.0);
-    Lanes::store_by_lane(&[[a5, known, known, known]], stride, &mut rows[16..]);
+    let facts = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).select_or_zero(1.0);
+    Lanes::store_by_lane(&[[a5, facts, facts, facts]], stride, &mut rows[16..]);
     largest
 }
 
@@ -236,20 +236,20 @@ fn store_short_rows<S: Simd>(
     let excluded = excludes_two_polynomials(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e];
-    let known = small_coefficient_bits(simd, &all) + (!excluded).select_or_zero(1.0);
+    let facts = small_coefficient_bits(simd, &all) + (!excluded).select_or_zero(1.0);
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
-    Lanes::store_by_lane(&[[a, b, c, known], [d, e, d, e]], SHORT_ROW_LENGTH, rows);
+    Lanes::store_by_lane(&[[a, b, c, facts], [d, e, d, e]], SHORT_ROW_LENGTH, rows);
     largest
 }
 
 /// Returns the bits of small coefficients; see [`OPEN_BIT`].
 #[inline(always)]
 fn small_coefficient_bits<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
-    let mut known = Lanes::splat(simd, BIT_SUM_BASE);
+    let mut facts = Lanes::splat(simd, BIT_SUM_BASE);
     for (number, coefficient) in all.iter().enumerate() {
-        known = known + is_small(*coefficient).select_or_zero(f64::from(2_u32 << number));
+        facts = facts + is_small(*coefficient).select_or_zero(f64::from(2_u32 << number));
     }
-    known
+    facts
 }

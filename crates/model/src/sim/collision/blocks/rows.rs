@@ -172,13 +172,13 @@ fn compute_edge(
     cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
-    let known = row[EDGE_FACTS_INDEX].to_bits();
+    let facts = row[EDGE_FACTS_INDEX].to_bits();
     let ends =
-        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, cursor);
-    if known & OPEN_BIT == 0 {
+        facts & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, cursor);
+    if facts & OPEN_BIT == 0 {
         output.excluded += 1;
     }
-    output.write_edge(row, known >> 1);
+    output.write_edge(row, facts >> 1);
     ends
 }
 
@@ -192,12 +192,12 @@ fn compute_two_polynomials(
     cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
-    let known = row[FACTS_INDEX].to_bits();
-    let ends = known & OPEN_BIT != 0
+    let facts = row[FACTS_INDEX].to_bits();
+    let ends = facts & OPEN_BIT != 0
         && output.decide(with.1, |counts| decide_two_polynomials(with.0, counts, pair, row), pair, cursor);
-    if known & OPEN_BIT == 0 {
+    if facts & OPEN_BIT == 0 {
         output.excluded += 1;
     }
-    output.write_two_polynomials(row, known >> 1);
+    output.write_two_polynomials(row, facts >> 1);
     ends
 }
