@@ -52,9 +52,9 @@ pub(super) fn add_defaults(command: Command, working: &Path) -> Result<Command> 
         let output = read.output.as_ref().map(below);
         let all = [("suite", suite), ("output", output), ("hints", read.hints), ("jobs", jobs)];
         return Ok(command.mut_subcommand("grade", |grade| {
-            let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
+            let settings = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
             // The value is never freed, because help texts must exist as long as the program runs.
-            given.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
+            settings.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
         }));
     }
     Ok(command)

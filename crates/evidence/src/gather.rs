@@ -120,7 +120,7 @@ pub fn gather(
     let wrong = |ruling: &StepRuling| if fair { ruling.wrong_by_fair } else { ruling.wrong_by_parity };
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let center = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
-    let close = find_detailed_steps(focus, first_wrong, layout);
+    let detailed_steps = find_detailed_steps(focus, first_wrong, layout);
     let mut gathering = EvidenceBuilder::new(scene, Window::for_focus(center, layout, budget));
     let mut reader = LenientReader::new(trace, layout).with_limit(record_memory(scene));
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
@@ -135,7 +135,7 @@ pub fn gather(
             break;
         }
         gathering.keep_states(step, &mid, &end);
-        let wanted_calls = close.contains(&step).then(|| find_wanted_calls(focus, step));
+        let wanted_calls = detailed_steps.contains(&step).then(|| find_wanted_calls(focus, step));
         let Some(count) = gathering.step(step, &before, (&mid, &end), wanted_calls.as_deref()) else { break };
         let ruling = rulings.get(step as usize - 1);
         let is_wrong = ruling.is_some_and(wrong);
@@ -273,9 +273,9 @@ impl<'a> EvidenceBuilder<'a> {
 /// the most important ones.
 fn find_detailed_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
-    let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
+    let near_steps = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
-    for step in near.chain(focus.iter().map(|focus| focus.step)) {
+    for step in near_steps.chain(focus.iter().map(|focus| focus.step)) {
         if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < most {
             chosen.push(step);
         }

@@ -20,11 +20,11 @@ const MARKED_DEVIATION: f64 = 1e-9;
 /// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong, or `None` if
 /// the lists are too long to be compared.
 pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
-    let same = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
+    let is_match = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
     let shorter = rows.min(columns);
-    let head = (0..shorter).take_while(|&place| same(place, place)).count();
-    let tail = (0..shorter - head).take_while(|&back| same(rows - 1 - back, columns - 1 - back)).count();
+    let head = (0..shorter).take_while(|&place| is_match(place, place)).count();
+    let tail = (0..shorter - head).take_while(|&back| is_match(rows - 1 - back, columns - 1 - back)).count();
     let mut found: Vec<Option<usize>> = (0..rows).map(|place| (place < head).then_some(place)).collect();
     for back in 0..tail {
         found[rows - 1 - back] = Some(columns - 1 - back);
@@ -39,7 +39,7 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
         let mut corner = above[0];
         above[0] += GAP_COST;
         for column in 0..wide {
-            let across = corner + if same(head + row, head + column) { 0 } else { MISMATCH_COST };
+            let across = corner + if is_match(head + row, head + column) { 0 } else { MISMATCH_COST };
             let (out, put) = (above[column + 1] + GAP_COST, above[column] + GAP_COST);
             corner = above[column + 1];
             (above[column + 1], cells[row * wide + column]) =
@@ -84,8 +84,9 @@ pub(crate) fn are_different(own: &[f64], right: &[f64]) -> bool {
     }
     let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
     let factor = own[place] / right[place];
-    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED_DEVIATION * (factor * scale).abs();
-    !(factor > 0.0 && own.iter().zip(right).all(near))
+    let is_near =
+        |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED_DEVIATION * (factor * scale).abs();
+    !(factor > 0.0 && own.iter().zip(right).all(is_near))
 }
 
 #[cfg(test)]

@@ -147,8 +147,8 @@ impl Grade {
             }
         }
         for grade in grades {
-            let same = grade.program.as_ref().map(|program| owners[program].iter());
-            let others = same.into_iter().flatten().filter(|other| **other != grade.submission);
+            let sharers = grade.program.as_ref().map(|program| owners[program].iter());
+            let others = sharers.into_iter().flatten().filter(|other| **other != grade.submission);
             grade.same_program = others.take(MAX_NAMED).cloned().collect();
         }
     }
@@ -194,10 +194,10 @@ impl Grade {
         }
         let first = self.scenes().next()?;
         let is_unfit = matches!(first.verdict, Verdict::Unusable | Verdict::CompileError | Verdict::Unwritten);
-        let same = |scene: &SceneGrade| {
+        let has_same_problem = |scene: &SceneGrade| {
             (scene.verdict, &scene.reason, &scene.ended) == (first.verdict, &first.reason, &first.ended)
         };
-        (is_unfit && self.scenes().all(same)).then(|| {
+        (is_unfit && self.scenes().all(has_same_problem)).then(|| {
             self.failed_build()
                 .map_or(SubmissionFault::Scene(&first.result), |build| SubmissionFault::Build(&build.end))
         })

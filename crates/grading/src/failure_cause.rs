@@ -72,13 +72,13 @@ impl FeatureIndex {
 
 /// Returns the features that all failing scenes have in common; `None` if the evidence for them is weak.
 pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
-    let failed: Vec<&TriedScene<'_>> = all_scenes.iter().filter(|one| one.failure.is_some()).collect();
+    let failed: Vec<&TriedScene<'_>> = all_scenes.iter().filter(|tried| tried.failure.is_some()).collect();
     let first = failed.first()?;
     let mut shared = first.features.clone();
-    failed.iter().for_each(|one| shared.retain(|feature| one.features.contains(feature)));
+    failed.iter().for_each(|tried| shared.retain(|feature| tried.features.contains(feature)));
     let mut with: BTreeMap<usize, Vec<FeatureIndex>> = BTreeMap::new();
     for feature in shared {
-        let scenes = all_scenes.iter().filter(|one| one.features.contains(&feature)).count();
+        let scenes = all_scenes.iter().filter(|tried| tried.features.contains(&feature)).count();
         with.entry(scenes).or_default().push(feature);
     }
     // Because every failing scene contains the value, Ochiai's measure is the square root of `failed / with`. A value
@@ -86,10 +86,10 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let (with, mut features) = with.into_iter().next()?;
     let looked_at: BTreeSet<Vec<bool>> = all_scenes
         .iter()
-        .flat_map(|one| one.features)
+        .flat_map(|tried| tried.features)
         .collect::<BTreeSet<_>>()
         .into_iter()
-        .map(|feature| all_scenes.iter().map(|one| one.features.contains(feature)).collect())
+        .map(|feature| all_scenes.iter().map(|tried| tried.features.contains(feature)).collect())
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let by_chance = chance_probability(failed.len(), with, all_scenes.len()) * looked_at.len() as f64;

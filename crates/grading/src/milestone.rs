@@ -41,7 +41,7 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
         let library = &assignment.definition().library;
         let knows = |integrator: &Integrator| library.integrators.contains(integrator);
         library.rejects_collisions != takes_collisions
-            && Integrator::ALL.iter().all(|one| knows(one) == integrators.contains(one))
+            && Integrator::ALL.iter().all(|integrator| knows(integrator) == integrators.contains(integrator))
     };
     Ok(Assignment::list_default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
 }
@@ -50,8 +50,8 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
 /// use.
 pub fn lacks(found: Assignment, expected: Assignment) -> bool {
     let (found, expected) = (&found.definition().library, &expected.definition().library);
-    expected.integrators.iter().any(|one| !found.integrators.contains(one))
-        || expected.collisions.iter().any(|one| !found.collisions.contains(one))
+    expected.integrators.iter().any(|integrator| !found.integrators.contains(integrator))
+        || expected.collisions.iter().any(|collision| !found.collisions.contains(collision))
 }
 
 /// Creates a scene of two steps with the given integrator and collision element.

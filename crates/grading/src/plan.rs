@@ -42,9 +42,9 @@ impl Plan {
             }
         }
         self.groups.retain(|group| !group.scenes.is_empty());
-        let left = self.scenes().count();
-        if left < all {
-            self.name = format!("{} ({left} of {all} scenes)", self.name);
+        let kept_count = self.scenes().count();
+        if kept_count < all {
+            self.name = format!("{} ({kept_count} of {all} scenes)", self.name);
         }
         self
     }
@@ -113,7 +113,7 @@ fn resolve(
         notes,
         groups: patterns,
     } = suite;
-    let mut seen = BTreeMap::new();
+    let mut seen_scenes = BTreeMap::new();
     let mut groups = Vec::new();
     for group in patterns {
         let mut scenes = Vec::new();
@@ -127,7 +127,7 @@ fn resolve(
                 Vec::new()
             });
             for (name, xml) in found {
-                if let Some(other) = seen.insert(name.clone(), group.name.clone()) {
+                if let Some(other) = seen_scenes.insert(name.clone(), group.name.clone()) {
                     problems.push((at, format!("scene {name} is in group \"{other}\" already")));
                     continue;
                 }

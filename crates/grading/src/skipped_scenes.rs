@@ -27,20 +27,20 @@ pub(super) fn skipped_result(task: &SceneTask, why: NotRunReason) -> SceneResult
 /// takes the whole limit, and a program that never ends in some scenes usually does not end in many others.
 const SCATTERED_FACTOR: u32 = 4;
 
-/// Returns the first scene that is skipped, and the reason. `known` has the verdict and the duration of each finished
-/// scene.
+/// Returns the first scene that is skipped, and the reason. `verdicts_and_times` has the verdict and the duration of
+/// each finished scene.
 pub(super) fn find_first_skipped(
     patience: &SkipLimits,
     fail_fast: bool,
-    known: &[Option<(Verdict, Duration)>],
+    verdicts_and_times: &[Option<(Verdict, Duration)>],
 ) -> Option<(usize, NotRunReason)> {
     let (mut stopped, mut worst, mut total) = (0, Verdict::Accepted, Duration::ZERO);
     let (mut scattered, mut worst_of_all) = (0, Verdict::Accepted);
-    for (number, known) in known.iter().enumerate() {
+    for (number, verdicts_and_times) in verdicts_and_times.iter().enumerate() {
         if total >= patience.total {
             return Some((number, NotRunReason::Total(patience.total)));
         }
-        let Some((verdict, took)) = *known else {
+        let Some((verdict, took)) = *verdicts_and_times else {
             stopped = 0;
             continue;
         };

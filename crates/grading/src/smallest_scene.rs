@@ -80,21 +80,21 @@ pub struct WrongScene<'a> {
 /// Returns the causes of the wrong scenes: the likely mistakes, the ways in which the program failed, and for a few
 /// scenes an unknown cause.
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
-    let likely = likely.iter().filter(|one| one.is_about_program() || one.is_not_finite());
+    let likely = likely.iter().filter(|explanation| explanation.is_about_program() || explanation.is_not_finite());
     let likely = likely.map(|one| WrongReason::Mistake(one.clone().into()));
     let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
-    for reason in likely.chain(wrong.iter().filter_map(|one| WrongReason::from_end(one.ended))) {
+    for reason in likely.chain(wrong.iter().filter_map(|wrong_scene| WrongReason::from_end(wrong_scene.ended))) {
         let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
             (WrongReason::Mistake(mistake), None) => is_named_in(mistake, one.explanations),
             (reason, end) => end.as_ref() == Some(reason),
         };
         left.retain(|one| !is_of(one));
-        let scenes: Vec<&SceneTask> = wrong.iter().filter(is_of).map(|one| one.task).collect();
+        let scenes: Vec<&SceneTask> = wrong.iter().filter(is_of).map(|wrong_scene| wrong_scene.task).collect();
         if !scenes.is_empty() && all.iter().all(|(known, _)| known.as_ref() != Some(&reason)) {
             all.push((Some(reason), scenes));
         }
     }
-    all.extend(left.iter().take(MAX_UNNAMED_CAUSES).map(|one| (None, vec![one.task])));
+    all.extend(left.iter().take(MAX_UNNAMED_CAUSES).map(|wrong_scene| (None, vec![wrong_scene.task])));
     all
 }
 
@@ -135,31 +135,31 @@ impl Shrinker<'_> {
             spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
         };
         for task in tasks.into_iter().take(MAX_SCENES) {
-            let seen = self.observe(&task.scene, &mut spent)?;
-            let Some(reason) = reason.clone().or_else(|| WrongReason::first_reason(&task.scene, &seen)) else {
+            let observed = self.observe(&task.scene, &mut spent)?;
+            let Some(reason) = reason.clone().or_else(|| WrongReason::first_reason(&task.scene, &observed)) else {
                 continue;
             };
-            let steps = self.limits.step.map_or_else(|| list_wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let steps = self.limits.step.map_or_else(|| list_wrong_steps(&task.scene, &observed), |step| vec![step]);
             let (mut runs, mut fault, mut held) = (0, Ok(()), None);
             let mut holds = |scene: &Scene, is_alone: bool| {
                 if runs == self.limits.runs || is_over(spent) {
                     return None;
                 }
                 runs += 1;
-                let seen = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
-                let seen = seen.filter(|_| !self.runner.cancellation.is_cancelled())?;
-                let holds = reason.is_reproduced(scene, &seen, is_alone);
-                held = if holds { Some(seen) } else { held.take() };
+                let observed = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
+                let observed = observed.filter(|_| !self.runner.cancellation.is_cancelled())?;
+                let holds = reason.is_reproduced(scene, &observed, is_alone);
+                held = if holds { Some(observed) } else { held.take() };
                 Some(holds)
             };
-            let small = reduce(&step_starts(&task.scene, &seen.trace, &steps), self.assignment, &mut holds);
+            let small = reduce(&step_starts(&task.scene, &observed.trace, &steps), self.assignment, &mut holds);
             fault?;
-            if let Some((small, seen)) = small.zip(held) {
+            if let Some((small, observed)) = small.zip(held) {
                 return Ok(Some(ShrunkScene {
                     reason,
                     origin: task.name.clone(),
                     scene: small,
-                    observation: seen,
+                    observation: observed,
                     runs,
                 }));
             }

@@ -17,10 +17,10 @@ pub fn find_nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, max_na
     let last = |name: &str| normalize_word(name.rsplit('/').next().unwrap_or_default());
     let (typed, typed_last) = (normalize_word(word), last(word));
     let likeness = |name: &str| jaro_winkler(&typed, &normalize_word(name)).max(jaro_winkler(&typed_last, &last(name)));
-    let mut near: Vec<(f64, &str)> = names.map(|name| (likeness(name), name)).collect();
+    let mut scored_names: Vec<(f64, &str)> = names.map(|name| (likeness(name), name)).collect();
     // The sort is stable, so names that are equally similar keep their order.
-    near.sort_by(|(one, _), (other, _)| other.total_cmp(one));
-    near.into_iter().take(max_names).map(|(_, name)| name).collect()
+    scored_names.sort_by(|(one, _), (other, _)| other.total_cmp(one));
+    scored_names.into_iter().take(max_names).map(|(_, name)| name).collect()
 }
 
 /// Returns the letters and digits of a text, in lower case.

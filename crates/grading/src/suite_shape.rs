@@ -282,12 +282,12 @@ fn list_words(words: &[&str], last: &str) -> String {
 /// Returns the message about an unknown key in a table.
 fn describe_unknown(key: &str, keys: &[TableKey], place: &str) -> String {
     let names = |keys: &'static [TableKey]| keys.iter().map(|TableKey(name, ..)| *name);
-    let here = keys.iter().map(|TableKey(name, ..)| *name);
-    let hint = match find_closest(key, here.clone()) {
+    let own_keys = keys.iter().map(|TableKey(name, ..)| *name);
+    let hint = match find_closest(key, own_keys.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
         None => match TABLE_KEYS.iter().find(|(_, other)| names(other).any(|name| name == key)) {
             Some((other, _)) => format!("it belongs in {other}"),
-            None => format!("there are {}", here.collect::<Vec<_>>().join(", ")),
+            None => format!("there are {}", own_keys.collect::<Vec<_>>().join(", ")),
         },
     };
     format!("unknown key `{key}` in {place}: {hint}")

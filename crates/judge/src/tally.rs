@@ -61,11 +61,11 @@ impl StepResult {
 
     /// Returns the number of findings of each kind after the first.
     pub(super) fn further_counts(&self) -> FindingCounts {
-        let mut more = FindingCounts::default();
+        let mut further = FindingCounts::default();
         for kind in self.first_findings.iter().map(Finding::kind) {
-            more.add(kind, self.counts.get(kind).saturating_sub(1));
+            further.add(kind, self.counts.get(kind).saturating_sub(1));
         }
-        more
+        further
     }
 
     fn record(&mut self, finding: Finding) {

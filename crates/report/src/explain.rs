@@ -17,7 +17,7 @@ const MAX_LISTED: usize = 3;
 /// Returns the lines of a report about explanations, the likeliest first. Lines that belong to a sentence are below it
 /// and indented by two blanks.
 pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<String> {
-    explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
+    explanations.iter().flat_map(|explanation| explanation_lines(explanation, style)).collect()
 }
 
 /// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
@@ -28,7 +28,7 @@ pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     }
     let together: Vec<String> = explanations
         .iter()
-        .filter(|one| one.is_complete() && one.topic == ExplanationTopic::Mistake)
+        .filter(|explanation| explanation.is_complete() && explanation.topic == ExplanationTopic::Mistake)
         .map(describe)
         .collect();
     if together.len() > 1 {
@@ -117,7 +117,7 @@ fn describe_others(keys: &[String]) -> Option<String> {
 
 /// Joins sentences, each of which may contain a colon, into one list.
 fn list_sentences(sentences: &[String]) -> String {
-    sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
+    sentences.iter().map(|sentence| sentence.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
 fn example_lines(example: &Example, style: Style) -> Vec<String> {

@@ -99,7 +99,7 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
         magnitude += value.abs() + if *value < 0.0 { 0.01 } else { 0.0 };
     }
     let efforts = [ExplicitEuler, SymplecticEuler, ForwardBackwardEuler, LinearizedImplicitEuler, ImplicitEuler];
-    let effort = efforts.iter().position(|one| *one == scene.integrator).unwrap_or_default();
+    let effort = efforts.iter().position(|integrator| *integrator == scene.integrator).unwrap_or_default();
     let handling = match scene.collision {
         Collision::None => 0,
         Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,

@@ -43,8 +43,8 @@ fn show(name: &str) -> Result<()> {
         return console::print(xml);
     }
     // A name without its group is accepted if it is unique.
-    let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
-    match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
+    let matching: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
+    match (matching[..].first().and_then(|only| library::scene(only)), matching.len()) {
         (Some(xml), 1) => console::print(xml),
         _ => bail!("there is no built-in scene {name}; `fosssim-oracle scene list` lists all"),
     }
@@ -71,8 +71,8 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
         console::report(&format!("{} written to {folder}{rest}\n", format_count(written, "scene")))?;
     }
     if let Some(first) = other.first() {
-        let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
-        bail!("{}{more}: not overwritten, because the content differs; --force overwrites", first.display());
+        let others_note = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
+        bail!("{}{others_note}: not overwritten, because the content differs; --force overwrites", first.display());
     }
     Ok(())
 }

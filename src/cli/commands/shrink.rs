@@ -158,7 +158,7 @@ pub(super) fn describe(
 
 /// Returns the explanation of the cause, but with the example from the smallest scene.
 fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
-    let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
+    let named = own.iter().find(|explanation| is_named_in(cause, std::slice::from_ref(explanation)));
     let example = named.or(own.first()).and_then(|one| one.example.clone());
     // If the cause is unwritten stages, the explanation lists these stages.
     let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };

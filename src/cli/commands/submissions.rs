@@ -124,10 +124,10 @@ impl<'a> Search<'a> {
 
     /// Returns whether a folder is the one for results, or contains the results of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
-        let same = |one: &Path, other: &Path| {
+        let is_same_path = |one: &Path, other: &Path| {
             one.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(one, other)| one == other)
         };
-        same(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
+        is_same_path(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
     }
 
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are skipped
@@ -302,14 +302,14 @@ fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<ProgramFil
     for (number, (identity, _)) in files.iter().enumerate().filter_map(|(number, file)| Some((number, (*file)?))) {
         owners.entry(identity).or_default().push(number);
     }
-    for same in owners.values().filter(|same| same.len() > 1) {
-        let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
+    for sharers in owners.values().filter(|sharers| sharers.len() > 1) {
+        let names: Vec<&str> = sharers.iter().map(|&number| names[number].as_str()).collect();
         console::print_error(format!("one file with several names (hard links): {}\n", names.join(", ")));
     }
     let to_program_file = |(identity, is_owner): (Identity, Option<bool>)| {
-        let same = &owners[&identity];
-        let is_owned = same.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
-        ProgramFile { identity, is_shared: same.len() > 1, has_other_owner: is_owned && is_owner != Some(true) }
+        let sharers = &owners[&identity];
+        let is_owned = sharers.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
+        ProgramFile { identity, is_shared: sharers.len() > 1, has_other_owner: is_owned && is_owner != Some(true) }
     };
     files.iter().map(|file| file.map(to_program_file)).collect()
 }

@@ -105,10 +105,10 @@ fn describe_other_traces(folder: &Folder, scenes: &[String]) -> Option<String> {
     let mut strays: Vec<&String> = found.iter().filter(is_stray).collect();
     strays.sort_unstable();
     let named: Vec<&str> = strays.iter().take(MAX_NAMED).map(|name| name.as_str()).collect();
-    let more = if strays.len() > MAX_NAMED { ", ..." } else { "" };
+    let ellipsis = if strays.len() > MAX_NAMED { ", ..." } else { "" };
     let verb = if strays.len() == 1 { "belongs" } else { "belong" };
     let count = format_count(strays.len() as u64, "trace");
-    (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
+    (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{ellipsis}", named.join(", ")))
 }
 
 /// The result of a scene, and a warning if files were skipped.

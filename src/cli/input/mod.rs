@@ -34,9 +34,10 @@ pub(super) fn asset_name(name: &Path) -> Option<&str> {
 }
 
 fn describe_missing_asset(what: &str, name: &str) -> String {
-    let near = suggestions::find_nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
+    let nearest =
+        suggestions::find_nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
     let name = to_one_line(name);
-    format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
+    format!("no embedded {what} is called `{name}`; the nearest are {nearest} (`fosssim-oracle scene list` lists all)")
 }
 
 /// Returns the error for a file that does not exist. If an embedded file has this name, the message suggests `asset:`.

@@ -99,7 +99,7 @@ impl<'a> CoverageObserver<'a> {
 
     fn zone_events(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
         let scene = self.scene;
-        let is_known = |zone: &&EarlierZone| zone.0.iter().any(|one| particles.contains(one));
+        let is_known = |zone: &&EarlierZone| zone.0.iter().any(|particle| particles.contains(particle));
         let age = match self.step.previous_zones.iter().find(is_known) {
             _ if self.step.rounds == 1 => Age::First,
             None => Age::New,

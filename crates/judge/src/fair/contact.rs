@@ -245,8 +245,8 @@ pub(super) fn compare_states(
 /// trace with the same value is right: the component counts as equal. If only one side has NaN, the result is NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
     let subtract = |expected: f64, actual: f64| {
-        let same = expected == actual || expected.is_nan() && actual.is_nan();
-        if same { 0.0 } else { expected - actual }
+        let is_same = expected == actual || expected.is_nan() && actual.is_nan();
+        if is_same { 0.0 } else { expected - actual }
     };
     length(Vec2::new(subtract(expected.x, actual.x), subtract(expected.y, actual.y)))
 }

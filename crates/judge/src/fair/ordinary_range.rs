@@ -38,11 +38,11 @@ impl OrdinaryRange {
     pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH_FACTOR * most);
-        let far = (0..particles).find(|&particle| {
+        let far_particle = (0..particles).find(|&particle| {
             is_far(l1_norm(vector_at(&state.positions, particle)), self.position)
                 || is_far(l1_norm(vector_at(&state.velocities, particle)), self.velocity)
         });
-        far.or_else(|| (spread(positions(state)) * FAIR_REACH_FACTOR < self.spread).then_some(0))
+        far_particle.or_else(|| (spread(positions(state)) * FAIR_REACH_FACTOR < self.spread).then_some(0))
     }
 
     /// Extends the range so that it contains a state that is known to be ordinary.

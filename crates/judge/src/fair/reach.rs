@@ -42,21 +42,22 @@ impl<'a> ExtraordinarySteps<'a> {
         Self { scene, range: OrdinaryRange::for_scene(scene), run: None, second_simulation: None }
     }
 
-    /// Judges a step with an extraordinary state. `known` is the judgement of a step that starts from ordinary states.
-    /// A step that starts from an extraordinary state is judged only if the reference reaches such states too. Steps
-    /// must be passed in order. Also returns the work. The simulation stops soon after it exceeds `max_work`.
+    /// Judges a step with an extraordinary state. `known_judgement` is the judgement of a step that starts from
+    /// ordinary states. A step that starts from an extraordinary state is judged only if the reference reaches such
+    /// states too. Steps must be passed in order. Also returns the work. The simulation stops soon after it exceeds
+    /// `max_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
         records: Records<'_>,
         identical: bool,
-        known: Option<StepJudgement>,
+        known_judgement: Option<StepJudgement>,
         max_work: u64,
     ) -> (StepJudgement, u64) {
         self.run_to(records.step);
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
         let found = (!is_lost).then(|| self.find_unreachable(&records)).flatten();
-        match (known, found) {
+        match (known_judgement, found) {
             (Some(judged), Some(detail)) if judged.total() == 0 => (judged.with_finding(records, detail), 0),
             (Some(judged), _) => (judged, 0),
             (None, Some(detail)) => (StepJudgement::default().with_finding(records, detail), 0),

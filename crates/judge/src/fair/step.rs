@@ -106,9 +106,9 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     let count = mid.polynomials.len();
     let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
     let is_complete = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
-    let same =
+    let is_same =
         is_complete && (0..count).all(|index| has_same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
-    if !same {
+    if !is_same {
         charge(FindingDetail::RecordsDiffer { part: RecordPart::Polynomials });
     }
 }

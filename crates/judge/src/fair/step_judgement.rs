@@ -52,12 +52,12 @@ impl StepJudgement {
         let frame = u64::from(step) * u64::from(context.records_per_step);
         let passes = polynomials.checked_div(context.polynomials_per_pass).unwrap_or(0);
         let passes = passes as u64;
-        let same = PairKindMap::from_fn(|kind| passes * context.calls_by_kind[kind]);
+        let identical_counts = PairKindMap::from_fn(|kind| passes * context.calls_by_kind[kind]);
         Self {
             step,
             frame,
             decisions: passes * context.pair_count as u64,
-            identical_polynomials: same,
+            identical_polynomials: identical_counts,
             ..Self::default()
         }
     }

@@ -125,7 +125,7 @@ impl NearPairs {
             .collect();
         let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
         let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
-        let mut near: Vec<NearPair> = Vec::new();
+        let mut near_pairs: Vec<NearPair> = Vec::new();
         let mut sums = vec![Vec2::zeros(); particles];
         terms.visit(&before.positions, |pair, forces| {
             let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
@@ -135,10 +135,10 @@ impl NearPairs {
                 candidate.count += 1;
             }
             candidate.changes().iter().for_each(|&(particle, change)| sums[particle] += change);
-            near.push(candidate);
+            near_pairs.push(candidate);
         });
         let (mut candidates, mut right) = (Vec::new(), Vec::new());
-        for one in near {
+        for one in near_pairs {
             let is_felt = |(particle, change): &&(usize, Vec2)| length(*change) > tolerances.velocity(*particle);
             let felt: Vec<usize> = one.changes().iter().filter(is_felt).map(|(particle, _)| *particle).collect();
             let shows =

@@ -46,8 +46,8 @@ fn main() -> anyhow::Result<ExitCode> {
     let mut accused = false;
     for (row, outcomes) in rows.iter().zip(&results) {
         let is_wrong = row.kind == RowKind::Wrong;
-        let is_first = outcomes.iter().any(|one| matches!(one.0, Outcome::First));
-        let is_other = outcomes.iter().any(|one| matches!(one.0, Outcome::Other(_)));
+        let is_first = outcomes.iter().any(|outcome| matches!(outcome.0, Outcome::First));
+        let is_other = outcomes.iter().any(|outcome| matches!(outcome.0, Outcome::Other(_)));
         accused |= !is_wrong && (is_first || is_other);
         let confusions: Vec<String> = scenes
             .iter()
@@ -87,17 +87,17 @@ fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     println!(
         "\nmistakes: {}; first on their best scene: {}; first or the same as the first: {}",
         wrong.len(),
-        best(|one| matches!(one, Outcome::First)),
-        best(|one| matches!(one, Outcome::First | Outcome::Among(_)))
+        best(|outcome| matches!(outcome, Outcome::First)),
+        best(|outcome| matches!(outcome, Outcome::First | Outcome::Among(_)))
     );
     println!(
         "traces that differ: {}; first: {}; same as the first: {}; other: {}; nothing: {}; round-off only: {}",
-        all(|one| !matches!(one, Outcome::Same)),
-        all(|one| matches!(one, Outcome::First)),
-        all(|one| matches!(one, Outcome::Among(_))),
-        all(|one| matches!(one, Outcome::Other(_))),
-        all(|one| matches!(one, Outcome::Nothing(_))),
-        all(|one| matches!(one, Outcome::Unseen))
+        all(|outcome| !matches!(outcome, Outcome::Same)),
+        all(|outcome| matches!(outcome, Outcome::First)),
+        all(|outcome| matches!(outcome, Outcome::Among(_))),
+        all(|outcome| matches!(outcome, Outcome::Other(_))),
+        all(|outcome| matches!(outcome, Outcome::Nothing(_))),
+        all(|outcome| matches!(outcome, Outcome::Unseen))
     );
 }
 

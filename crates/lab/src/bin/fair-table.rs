@@ -28,9 +28,9 @@ fn main() -> anyhow::Result<()> {
         anyhow::ensure!(parity == row.overall, "{} {}: parity says {parity}", row.submission, row.scene);
         let differ = (parity == "passed") != (verdict == "accepted");
         if all || differ || (row.kind == "a" && verdict != "accepted") {
-            let same = if row.trace_equals_reference == Some(true) { " (the reference's bytes)" } else { "" };
+            let bytes_note = if row.trace_equals_reference == Some(true) { " (the reference's bytes)" } else { "" };
             println!(
-                "{:<28} {:<8} {:<32} parity {parity:<7} fair {verdict}{same}: {}",
+                "{:<28} {:<8} {:<32} parity {parity:<7} fair {verdict}{bytes_note}: {}",
                 row.submission,
                 row.kind,
                 row.scene,

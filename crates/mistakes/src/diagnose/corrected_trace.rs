@@ -26,12 +26,12 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
         return CorrectedTrace {
-            explanations: own.iter().filter_map(|one| remove_refuted(one, refuted)).collect(),
+            explanations: own.iter().filter_map(|explanation| remove_refuted(explanation, refuted)).collect(),
             agreed_count: 0,
         };
     }
     // The step from which values are not finite is reported for each trace.
-    explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
+    explanations.extend(own.iter().find(|explanation| explanation.is_not_finite()).cloned());
     CorrectedTrace { agreed_count: explanations.len(), explanations }
 }
 
@@ -74,9 +74,9 @@ fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation>
     }
     if likely.is_unfinished() {
         // Each stage is checked separately, because a trace may not show all of them.
-        return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
+        return own.iter().filter(|explanation| likely.same_as.contains(&explanation.key)).cloned().collect();
     }
-    let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));
+    let shown = own.iter().find(|explanation| is_named_in(likely, std::slice::from_ref(explanation)));
     let as_shown = |one: &Explanation| {
         // Steps are counted for known mistakes, and polynomials for guesses about polynomials.
         let has_same_counts =

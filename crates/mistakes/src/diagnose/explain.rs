@@ -54,7 +54,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         return known;
     }
     let mut polynomials = polynomial::explain(&detections);
-    if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
+    if known.iter().any(|explanation| find(&explanation.key).is_some_and(is_empty_stage)) {
         polynomials.retain(|one| !one.reports_missing_polynomials());
     }
     for explanation in &mut known {
@@ -64,7 +64,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
                 let kinds = PairKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
                 kinds.flat_map(Subject::all_of_kind).any(|subject| claim.starts_with(&format!("{subject:?}/")))
             };
-            let claims = polynomials.iter().flat_map(|one| &one.claims);
+            let claims = polynomials.iter().flat_map(|explanation| &explanation.claims);
             explanation.claims = claims.filter(is_of_kind).cloned().collect();
         }
     }
@@ -108,9 +108,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all.iter_mut().for_each(add_letter_note);
     all.extend(stage);
     // The sort is stable, so a known mistake stays before equally good guesses.
-    all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
+    all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
     all.extend(not_finite);
-    all.iter_mut().for_each(|one| one.contradicted_keys.clone_from(&denies));
+    all.iter_mut().for_each(|explanation| explanation.contradicted_keys.clone_from(&denies));
     all
 }
 

@@ -73,19 +73,19 @@ pub fn explain_together<'a>(
     }
     drop_disputed([&mut found, &mut empty], &traces);
     let is_unwritten = |subject: &Subject| {
-        let rows = empty.iter().filter_map(|one| find(&one.key));
+        let rows = empty.iter().filter_map(|explanation| find(&explanation.key));
         rows.filter(|row| is_formula_area(row.area))
             .any(|row| row.pair_kind().is_none_or(|kind| kind == subject.kind()))
     };
     // A trace in which stages are empty shows no other mistakes.
-    wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
+    wrong.retain(|list| !empty.iter().any(|explanation| is_named_in(explanation, list)));
     if let Some(head) = explain_wrong_polynomials(&wrong, &found, is_unwritten) {
         // After a wrong formula, later stages are wrong as a consequence.
-        found.retain(|one| !one.names_stage());
+        found.retain(|explanation| !explanation.names_stage());
         found.insert(0, head);
     }
     near_pairs::merge_explanations(&mut found, &traces);
-    let end = explain_non_finite_value(&traces).filter(|one| !refuted.contains(&one.key));
+    let end = explain_non_finite_value(&traces).filter(|explanation| !refuted.contains(&explanation.key));
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
 }
 
@@ -104,20 +104,20 @@ fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
     let [found, empty] = lists;
     let all = [found.as_slice(), empty.as_slice()].concat();
     let has_rival = |one: &Explanation| all.iter().any(|other| are_rivals(one, other));
-    found.retain(|one| !has_rival(one));
-    empty.retain(|one| !has_rival(one));
+    found.retain(|explanation| !has_rival(explanation));
+    empty.retain(|explanation| !has_rival(explanation));
     if found.len() + empty.len() < all.len() {
-        let stages = || traces.iter().copied().flatten().filter(|one| one.names_stage());
+        let stages = || traces.iter().copied().flatten().filter(|explanation| explanation.names_stage());
         let agreeing = |one: &Explanation| stages().filter(|other| other.key == one.key).count();
-        found.extend(stages().max_by_key(|one| agreeing(one)).cloned());
+        found.extend(stages().max_by_key(|explanation| agreeing(explanation)).cloned());
     }
 }
 
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
 fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
-    let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
+    let ends = || traces.iter().filter_map(|list| list.iter().find(|explanation| explanation.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
-    let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
+    let likeliest = ends().rev().max_by_key(|explanation| agreeing(explanation))?;
     let mut likeliest = likeliest.clone();
     if let ExplanationTopic::NotFinite(found) = &mut likeliest.topic
         && ends().count() > 1
@@ -160,11 +160,11 @@ fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
     if sure.len() < 2 {
         return sure.into_iter().chain(doubted).collect();
     }
-    let mut keys: Vec<String> = sure.iter().map(|one| one.key.clone()).collect();
+    let mut keys: Vec<String> = sure.iter().map(|explanation| explanation.key.clone()).collect();
     keys.sort_by_key(|key| CATALOGUE.iter().position(|row| row.id == *key));
     let all = Explanation {
-        reproduced: sure.iter().map(|one| one.reproduced).sum(),
-        samples: sure.iter().map(|one| one.samples).sum(),
+        reproduced: sure.iter().map(|explanation| explanation.reproduced).sum(),
+        samples: sure.iter().map(|explanation| explanation.samples).sum(),
         same_as: keys,
         ..Explanation::with_topic(Explanation::UNFINISHED, ExplanationTopic::Unfinished)
     };
@@ -184,12 +184,12 @@ fn explain_wrong_polynomials(
         let of_polynomials =
             list.iter().filter(|one| matches!(one.topic, ExplanationTopic::Polynomials { .. }) || is_formula_row(one));
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
-        let subjects = subjects.into_iter().filter(|one| !is_unwritten(one));
+        let subjects = subjects.into_iter().filter(|subject| !is_unwritten(subject));
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
     let most = wrong.values().copied().max()?;
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
-    let is_reported = found.iter().any(|one| !one.subjects().is_empty())
+    let is_reported = found.iter().any(|explanation| !explanation.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
     // A fault in only a few traces may follow from another mistake.
     if is_reported || most * 2 <= traces.len() {
@@ -283,7 +283,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let observed = |row: &Row| {
         let is_of_kind = |one: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(one) == Some(kind));
         let shows = |trace: &&OpenTrace| {
-            trace.symptoms.iter().any(|one| is_of_it(&one.explanation) && is_of_kind(&one.explanation))
+            trace.symptoms.iter().any(|symptom| is_of_it(&symptom.explanation) && is_of_kind(&symptom.explanation))
         };
         open.iter().filter(shows).count()
     };
@@ -291,10 +291,10 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let explained = |row: &Row| open.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
-    let has_details = all().any(|one| is_of_it(one) && !one.is_vague());
+    let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
     // If pairs are in another order, the polynomials of one pair are in the place of another pair's.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
-    let has_order = all().any(|one| one.key == Explanation::ORDER);
+    let has_order = all().any(|explanation| explanation.key == Explanation::ORDER);
     for trace in open.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
             symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));

@@ -34,7 +34,7 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         return explanations.iter().any(|one| is_about(one) && says_so(one));
     }
     let statement = mistake.statement();
-    explanations.iter().any(|one| alternative_statements(one).contains_key(&statement))
+    explanations.iter().any(|explanation| alternative_statements(explanation).contains_key(&statement))
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,

@@ -90,8 +90,8 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     }
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
-        let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();
-        proven.peek().is_some() && proven.all(|one| is_named_in(mistake, std::slice::from_ref(one)))
+        let mut proven = scene.explanations.iter().filter(|explanation| explanation.is_proven()).peekable();
+        proven.peek().is_some() && proven.all(|explanation| is_named_in(mistake, std::slice::from_ref(explanation)))
     };
     let of_group = |group: &GroupGrade| {
         let is_right = |scene: &SceneGrade| scene.verdict.is_accepted() || is_mended(scene);

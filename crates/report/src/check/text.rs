@@ -106,7 +106,7 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     if let (Some(kind), true) = (check.other_file_kind, check.is_not_a_trace()) {
         return format!("is not a trace: it {kind}; a program writes one with -s scene.xml -d 0 -o trace.bin");
     }
-    if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
+    if let Some(question) = check.explanations.iter().find(|explanation| explanation.is_other_scene()) {
         return words::explanation::describe(question);
     }
     let steps = count(u64::from(outcome.steps));

@@ -41,7 +41,7 @@ pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Opt
 /// Returns the best rank that one of these explanations has among the likely mistakes. Explanations that are not likely
 /// mistakes rank after all of them, and no explanation ranks last.
 pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
-    let named = likely.iter().position(|one| is_named_in(one, own));
+    let named = likely.iter().position(|explanation| is_named_in(explanation, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
 }
 

@@ -185,7 +185,7 @@ pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
         }
     }
     let mut sorted: Vec<_> = found.into_values().collect();
-    sorted.sort_by_key(|one| std::cmp::Reverse(one.members.len()));
+    sorted.sort_by_key(|cluster| std::cmp::Reverse(cluster.members.len()));
     sorted
 }
 

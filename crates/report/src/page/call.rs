@@ -135,7 +135,7 @@ fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Int
 
 /// Returns the zeros of a polynomial within the step. They are the ends of the intervals in which it is positive.
 fn interval_ends(set: &[Interval]) -> Vec<f64> {
-    set.iter().flat_map(|one| [one.lo, one.hi]).collect()
+    set.iter().flat_map(|interval| [interval.lo, interval.hi]).collect()
 }
 
 fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {

@@ -138,7 +138,7 @@ impl TraceContent<'_> {
     /// whose differences only follow from earlier wrong passes. The second list has calls that are wrong themselves.
     fn group_calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
         let first = self.case.first().map(|first| first.step);
-        let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
+        let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |call| (up.step, call)));
         let mut calls: Vec<_> = calls.collect();
         calls.sort_by_key(|(step, _)| Some(*step) != first);
         let follows = consequences::count_consequences(self.check.outcome) > 0;

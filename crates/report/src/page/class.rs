@@ -171,7 +171,7 @@ fn suite_name(grades: &[Grade]) -> &str {
 /// Returns the names of the scenes in the form that the page's script reads.
 fn scene_names(grades: &[Grade]) -> String {
     let names: Vec<&str> =
-        grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
+        grades.first().iter().flat_map(|grade| grade.scenes()).map(|scene_grade| scene_grade.scene.as_str()).collect();
     render_data(&serde_json::json!(names))
 }
 

@@ -131,7 +131,7 @@ impl GradeContent<'_> {
 
     /// Returns the first scene of a group that the page lists.
     fn first_listed_scene(&self, group: &GroupGrade) -> Option<&SceneGrade> {
-        let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
+        let is_here = |scene: &SceneGrade| group.scenes.iter().any(|scene_grade| scene_grade.scene == scene.scene);
         self.listed.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
     }
 

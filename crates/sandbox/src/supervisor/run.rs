@@ -299,7 +299,7 @@ impl Run {
                     .map_or(next_look, |next| next.min(next_look))
                     .saturating_duration_since(Instant::now()),
             )?;
-            let ready = found.map(|one| one != Readiness::Idle);
+            let ready = found.map(|readiness| readiness != Readiness::Idle);
             if ready[0] {
                 self.run_commands();
             }

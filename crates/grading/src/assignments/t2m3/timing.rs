@@ -85,9 +85,9 @@ fn pile_of_ribbons() -> String {
     let mut drawn = PseudoRandomNumbers(2);
     let mut edges = String::new();
     for ribbon in 0..ribbons {
-        let left = 2 * drawn.next();
+        let left_x = 2 * drawn.next();
         for link in 0..length {
-            let place = [left + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
+            let place = [left_x + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
             add_particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
             if link > 0 {
                 let second = ribbon * length + link;

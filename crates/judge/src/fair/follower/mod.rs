@@ -257,8 +257,8 @@ impl StepController for Follower<'_> {
         let records = self.records;
         let logged = |number: usize| records.end.polynomials.get(index + number);
         let mut numbered = polynomials.iter().enumerate();
-        let same = numbered.all(|(number, own)| has_same_bits(own.coefficients(), logged(number)));
-        if same {
+        let is_same = numbered.all(|(number, own)| has_same_bits(own.coefficients(), logged(number)));
+        if is_same {
             self.judgement.identical_polynomials[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // If the decision is disputed, the effect of round-off must be known.

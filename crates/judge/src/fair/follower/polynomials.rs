@@ -38,8 +38,8 @@ impl<'a> Follower<'a> {
             let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
             bounds.map_or(motion, |bounds| motion.widen(self.context.particles(pair), bounds))
         };
-        let mut seen = motion(q_end, bounds);
-        let mut expected = seen.polynomials();
+        let mut bounded_motion = motion(q_end, bounds);
+        let mut expected = bounded_motion.polynomials();
         let matches = |expected: &ExpectedPolynomials, at_once: &[Option<Match>]| -> PolynomialComparisons {
             std::array::from_fn(|number| match at_once.get(number) {
                 None => Ok(Match { scale: None, tolerance_share: 0.0 }),
@@ -57,7 +57,7 @@ impl<'a> Follower<'a> {
             if others.iter().filter(|result| result.is_err()).count()
                 < results.iter().filter(|result| result.is_err()).count()
             {
-                (seen, expected, results) = (other_motion, other, others);
+                (bounded_motion, expected, results) = (other_motion, other, others);
             }
         }
         let (mut has_right_approach, mut is_right) = (false, true);
@@ -86,7 +86,7 @@ impl<'a> Follower<'a> {
             self.judgement.has_finding_after_response |=
                 self.is_moved(pair) && (is_pending || matches!(judgement, PolynomialJudgement::Wrong(_)));
         }
-        self.call.motion = Some(CallMotion { motion: seen, has_right_approach });
+        self.call.motion = Some(CallMotion { motion: bounded_motion, has_right_approach });
         is_right
     }
 

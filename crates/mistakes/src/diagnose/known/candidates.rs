@@ -55,7 +55,7 @@ impl<'a> Candidates<'a> {
 
     /// Returns the rows that reproduce every step.
     fn complete_scores(&self) -> Vec<Score> {
-        let mut left: Vec<&Candidate> = self.candidates.iter().collect();
+        let mut remaining: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
         for sample in
             self.probe_steps.iter().copied().chain(&self.scan.right_steps).chain(self.other_steps.iter().copied())
@@ -63,13 +63,13 @@ impl<'a> Candidates<'a> {
             if self.trials.exceeds_limit(MAX_WORK) && samples > 0 {
                 break;
             }
-            left.retain(|candidate| self.reproduces(candidate, sample));
-            if left.is_empty() {
+            remaining.retain(|candidate| self.reproduces(candidate, sample));
+            if remaining.is_empty() {
                 break;
             }
             samples += u64::from(sample.difference.is_some());
         }
-        left.iter().map(|(row, _)| Score { row, reproduced: samples, samples }).collect()
+        remaining.iter().map(|(row, _)| Score { row, reproduced: samples, samples }).collect()
     }
 
     /// Returns the rows that reproduce the most wrong steps, at least half of them, and all right ones.
@@ -80,7 +80,7 @@ impl<'a> Candidates<'a> {
         let spread: Vec<&KeptStep> = wrong.iter().step_by(stride).copied().collect();
         let rest = wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
         let rest: Vec<&KeptStep> = rest.map(|(_, sample)| *sample).collect();
-        let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
+        let mut remaining: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
             if self.trials.exceeds_limit(MAX_WORK) {
@@ -89,21 +89,21 @@ impl<'a> Candidates<'a> {
             tried = number + 1;
             // A candidate that fails on more than half of the sampled steps is dropped.
             let allowed = spread.len().max(tried) / 2;
-            left.retain_mut(|(candidate, reproduced)| {
+            remaining.retain_mut(|(candidate, reproduced)| {
                 *reproduced += usize::from(self.reproduces(candidate, sample));
                 tried - *reproduced <= allowed
             });
         }
         // A mistake that does not reproduce the first difference is not the right one.
-        left.retain(|(candidate, reproduced)| {
+        remaining.retain(|(candidate, reproduced)| {
             2 * reproduced >= tried
                 && self.scan.wrong_steps.first().is_none_or(|first| self.reproduces(candidate, first))
                 && self.scan.right_steps.iter().all(|sample| self.reproduces(candidate, sample))
         });
-        let most = left.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
-        left.retain(|(_, reproduced)| *reproduced == most && most > 0);
+        let most = remaining.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
+        remaining.retain(|(_, reproduced)| *reproduced == most && most > 0);
         let (reproduced, samples) = (most as u64, tried as u64);
-        left.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
+        remaining.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 
     /// Returns whether the program logs the same as the submission in this step.

@@ -14,17 +14,17 @@ pub(super) fn find_example(
     reference: &mut Reference<'_>,
     scene: &Scene,
     correct: ApproachForm,
-    kept: &KeptStep,
+    kept_step: &KeptStep,
 ) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail. If it failed, the lists below would be empty.
-    let _end = reference.step(kept.step, &kept.before, &mut capture);
+    let _end = reference.step(kept_step.step, &kept_step.before, &mut capture);
     if correct == ApproachForm::RightApproach {
         let world = World::new(scene.clone(), correct.with_mistake(None));
-        capture.records = resimulate(&world, &kept.before, &mut StepLog::default()).unwrap_or_default();
+        capture.records = resimulate(&world, &kept_step.before, &mut StepLog::default()).unwrap_or_default();
     }
-    let (ours, theirs) = (&capture.records, &kept.records);
-    let (place, expected, actual) = match kept.difference {
+    let (ours, theirs) = (&capture.records, &kept_step.records);
+    let (place, expected, actual) = match kept_step.difference {
         Some(StepDifference::Polynomial(index)) => {
             let list = |log: &fosssim_model::trace::PolynomialLog| {
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
@@ -53,7 +53,7 @@ pub(super) fn find_example(
         }
         Some(StepDifference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
     };
-    Example { step: kept.step, place, given: Vec::new(), expected, actual }
+    Example { step: kept_step.step, place, given: Vec::new(), expected, actual }
 }
 
 /// Returns the first different contact as three numbers: normal and time.

@@ -88,7 +88,7 @@ pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, m
     }
     let denies = contradictions::find_contradicted_keys(scene, &scan);
     let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
-    explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
+    explanations.retain(|explanation| explanation.is_complete() || !denies.contains(&explanation.key));
     if !explanations.is_empty() || scan.outline.padded_records == 0 {
         return KnownMistakes { explanations, unexplained: (!is_settled).then_some(scan), contradicted_keys: denies };
     }

@@ -221,7 +221,7 @@ fn mistakes_of_several_scenes_are_settled_together() {
     // The scenes belong to one program, and each shows another missing part.
     let said = |ids: &[&str]| {
         let mut explanations = explain(&scene(), &made(&scene(), ids));
-        explanations.iter_mut().for_each(|one| one.contradicted_keys.clear());
+        explanations.iter_mut().for_each(|explanation| explanation.contradicted_keys.clear());
         explanations
     };
     let (alone, other) = (said(&["pp-empty"]), said(&["pe-empty", "ph-empty"]));

@@ -55,26 +55,26 @@ pub struct PairTrait {
 /// Returns the nearby pairs that wrong steps omit or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
-    let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
+    let mut remaining_work = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<TraitVariant> = variants().collect();
     let of_kind = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(of_kind).into() };
-    let mut seen: BTreeSet<(Pair, usize)> = BTreeSet::new();
+    let mut seen_pairs: BTreeSet<(Pair, usize)> = BTreeSet::new();
     for kept in steps {
         let own = reference.step(kept.step, &kept.before, &mut ())?;
         let moment = StepGeometry::new(scene, &kept.before);
         for (pair, times) in count_applications(scene, &kept.before, own, &kept.records.end.state) {
-            if left == 0 || !seen.insert((pair, times)) {
+            if remaining_work == 0 || !seen_pairs.insert((pair, times)) {
                 continue;
             }
-            left -= 1;
+            remaining_work -= 1;
             if times != 1 && wrong.first.is_none_or(|(_, step)| kept.step < step) {
                 wrong.first = Some((pair, kept.step));
             }
-            let near = PlacedPair { geometry: &moment, pair };
+            let placed = PlacedPair { geometry: &moment, pair };
             let counts = &mut wrong.counts_by_kind[pair.kind as usize];
             counts.counts_by_times[times] += 1;
-            let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&near));
+            let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&placed));
             held.for_each(|(_, counts)| counts[times] += 1);
         }
     }

@@ -114,7 +114,7 @@ trait_table! {
         "(edge, particle) is used instead of (particle, edge)" |pair, _, _| is_lost_when_exchanged(pair);
     NO_AXIS NO_NUMBER "the first body of its kind is involved" "i or j is 0" |pair, _, _| pair.indices().contains(&0);
     NO_AXIS NO_NUMBER "the last particle is involved" "i or j is the last number"
-        |pair, _, _| body_particles(pair).any(|one| one + 1 == pair.geometry.scene.particles.len());
+        |pair, _, _| body_particles(pair).any(|particle| particle + 1 == pair.geometry.scene.particles.len());
     NO_AXIS NO_NUMBER "the last edge or half-plane is involved" "Its number is the last one"
         |pair, _, _| match pair.pair.kind {
             PairKind::ParticleParticle => false,

@@ -65,8 +65,8 @@ impl Dictionary {
     /// Returns the weight that the formula gives a product in a coefficient.
     pub fn weight(&self, formula: &Formula, power: usize, product: usize) -> f64 {
         let letters = &self.products[product].letters;
-        let same = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
-        same.fold(0.0, |sum, term| sum + term.weight)
+        let matching = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
+        matching.fold(0.0, |sum, term| sum + term.weight)
     }
 
     /// Returns the two letters of a product, as separate products, or `None` for products of another length.

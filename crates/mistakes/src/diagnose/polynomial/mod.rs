@@ -134,7 +134,7 @@ impl WrongPolynomial<'_> {
         };
         let found = PolynomialEvidence::Guess(best.guess.clone());
         Explanation {
-            details: best.details.iter().cloned().map(|one| guess_detail(one, &[self.study.subject])).collect(),
+            details: best.details.iter().cloned().map(|detail| guess_detail(detail, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
             samples,
             example: example::find_smallest_example(&self.study).map(|(_, example)| example),
@@ -192,8 +192,8 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
     let makes = |row: &&Row| {
         study.cases.iter().all(|case| {
             let predicted = body_polynomials(Student::new(Some(row.mistake)), &case.sample.motion);
-            let same = |predicted: &Vec<f64>| polynomial_matches(predicted, case.logged, &ROUND_OFF);
-            predicted.get(number).is_some_and(same)
+            let is_match = |predicted: &Vec<f64>| polynomial_matches(predicted, case.logged, &ROUND_OFF);
+            predicted.get(number).is_some_and(is_match)
         })
     };
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
@@ -282,11 +282,11 @@ fn summarize_unexplained(unknown: &[WrongPolynomial]) -> Option<Explanation> {
 fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
-        let mut seen: Vec<&str> = Vec::new();
+        let mut seen_keys: Vec<&str> = Vec::new();
         for candidate in suspect.complete_guesses().filter(|candidate| candidate.guess.is_general()) {
             let key = candidate.guess.key();
-            if !seen.contains(&key) {
-                seen.push(key);
+            if !seen_keys.contains(&key) {
+                seen_keys.push(key);
                 let entry = keys.entry(key).or_default();
                 *entry = (entry.0 + 1, entry.1 + candidate.cost);
             }
@@ -311,7 +311,7 @@ fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
     let examples = covered.iter().filter_map(|suspect| example::find_smallest_example(&suspect.study));
-    let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| guess_detail(one.clone(), &subjects));
+    let details = guesses.iter().flat_map(|guess| &guess.details).map(|detail| guess_detail(detail.clone(), &subjects));
     let found = PolynomialEvidence::Guess(guesses[0].guess.clone());
     Explanation {
         details: take_distinct(details, MAX_OTHER_KEYS),

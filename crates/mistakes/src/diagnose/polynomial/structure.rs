@@ -71,14 +71,14 @@ fn is_single_precision(case: &Case) -> bool {
         f64::from(rounded) == value
     };
     let units = 2.0 * FAIR_UNITS * SINGLE_ROUNDOFF;
-    let close = |power: usize| {
+    let is_close = |power: usize| {
         let expected = expected_at(&case.expected, power);
         let value = logged_at(case.logged, power).unwrap_or(0.0);
         let room = units * (case.scale * expected.bound + value.abs());
         (value - case.scale * expected.value).abs() <= room + MIN_LEADING_COEFFICIENT
     };
     let is_short = case.logged.len() <= case.expected.len();
-    is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
+    is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(is_close)
 }
 
 fn negate_coefficients(list: &[BoundedValue]) -> Vec<BoundedValue> {

@@ -223,8 +223,8 @@ fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleran
     if ours.len() != theirs.len() {
         return false;
     }
-    let same = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| impulse_matches(ours, theirs, by);
-    if ours.iter().zip(theirs).all(same) {
+    let is_match = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| impulse_matches(ours, theirs, by);
+    if ours.iter().zip(theirs).all(is_match) {
         return true;
     }
     let sorted = |list: &[LoggedImpulse]| {
@@ -232,7 +232,7 @@ fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleran
         list.sort_by_key(|impulse| (impulse.kind, impulse.first, impulse.second));
         list
     };
-    sorted(ours).iter().zip(&sorted(theirs)).all(same)
+    sorted(ours).iter().zip(&sorted(theirs)).all(is_match)
 }
 
 /// Returns whether two contacts are equal up to round-off.

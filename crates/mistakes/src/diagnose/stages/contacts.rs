@@ -30,7 +30,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
         return false;
     }
     let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
-    let mut left: Vec<(usize, usize, usize)> = facts
+    let mut unmatched: Vec<(usize, usize, usize)> = facts
         .detections
         .iter()
         .zip(ends)
@@ -38,7 +38,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
         .take_while(|(_, (_, end))| *end <= size)
         .map(|(number, ((_, first), end))| (number, *first, end))
         .collect();
-    let pairs = left.len();
+    let pairs = unmatched.len();
     let (mut at, mut found, mut moved, mut misplaced, mut last) = (0, 0, 0, 0, 0);
     while at < size {
         let is_here = |&(_, first, end): &(usize, usize, usize)| {
@@ -47,13 +47,13 @@ fn is_permuted(facts: &StepFacts) -> bool {
                     .all(|index| polynomial_matches(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
         };
         // The expected pair is tried first, then the following ones, because pairs may be similar.
-        let own = left.iter().position(|block| block.1 == at && is_here(block));
-        let later = left.iter().position(|block| block.0 >= last && is_here(block));
-        let Some(index) = own.or(later).or_else(|| left.iter().position(is_here)) else {
+        let own = unmatched.iter().position(|block| block.1 == at && is_here(block));
+        let later = unmatched.iter().position(|block| block.0 >= last && is_here(block));
+        let Some(index) = own.or(later).or_else(|| unmatched.iter().position(is_here)) else {
             at += 1;
             continue;
         };
-        let (number, first, end) = left.remove(index);
+        let (number, first, end) = unmatched.remove(index);
         found += 1;
         moved += usize::from(first != at);
         misplaced += usize::from(number < last);

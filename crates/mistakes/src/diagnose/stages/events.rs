@@ -70,7 +70,7 @@ impl StepEvents<'_> {
             return;
         }
         let expected = BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
-        let values = |form: &[BoundedValue]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
+        let values = |form: &[BoundedValue]| form.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
         if let Some(other) = expected.other_form(APPROACH_INDEX).map(values)
             && other != values(expected.polynomial(APPROACH_INDEX))
         {

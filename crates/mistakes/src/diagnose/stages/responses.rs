@@ -121,7 +121,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
         let own = pair_particles(scene, hit.pair);
         let touches = |other: &Hit| {
             other.detection_index != hit.detection_index
-                && pair_particles(scene, other.pair).iter().any(|one| own.contains(one))
+                && pair_particles(scene, other.pair).iter().any(|particle| own.contains(particle))
         };
         !hits().any(touches) && is_final(scene, facts, hit)
     };

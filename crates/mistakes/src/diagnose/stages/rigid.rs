@@ -64,16 +64,17 @@ fn explain_first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explan
     let is_wrong = |facts: &&&StepFacts| {
         facts.logged_passes().is_some() && facts.right_polynomials < polynomial_index_after(facts, 1)
     };
-    let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
-    if seen.is_empty() {
+    let wrong_zones: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
+    if wrong_zones.is_empty() {
         return None;
     }
     let is_prediction = |facts: &&&StepFacts| {
         let pass = polynomial_index_after(facts, 0) / facts.pass_size();
         facts.fits_motion(scene, pass, &facts.prediction.positions, |_| true)
     };
-    let positions = if seen.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
-    Some(new_observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
+    let positions =
+        if wrong_zones.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
+    Some(new_observation(StageFault::ZonePositions(positions), Vec::new(), wrong_zones.len()))
 }
 
 /// Returns the explanation of a second geometric pass that uses the positions before the failsafe, although the
@@ -196,7 +197,7 @@ impl ZoneMotions {
     }
 
     fn count_results(&self, result: ZoneResult) -> usize {
-        self.results.iter().filter(|one| **one == result).count()
+        self.results.iter().filter(|zone_result| **zone_result == result).count()
     }
 
     fn explain(&self) -> Option<Explanation> {

@@ -47,19 +47,19 @@ pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
 
 /// Returns the explanation of steps that log right polynomials, but too many or too few of them.
 fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
-    let mut seen: Vec<(usize, usize)> = Vec::new();
+    let mut seen_counts: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
         let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.mid_states()) else {
             continue;
         };
         let counts = (expected.polynomials.len() / facts.pass_size(), passes);
         if counts.0 != counts.1 && facts.right_polynomials >= expected.polynomials.len().min(actual.polynomials.len()) {
-            seen.push(counts);
+            seen_counts.push(counts);
         }
     }
-    let sort = |ordering: Ordering| seen.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
+    let sort = |ordering: Ordering| seen_counts.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
     // Most of the faults must be of this kind; the other faults may follow from it.
-    if seen.is_empty() || 2 * seen.len() < wrong.len() {
+    if seen_counts.is_empty() || 2 * seen_counts.len() < wrong.len() {
         return None;
     }
     let number = match (sort(Ordering::Less), sort(Ordering::Greater)) {
@@ -68,13 +68,13 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
         _ => RoundCountError::Other,
     };
     let mut details: Vec<StageDetail> = Vec::new();
-    for &(expected, actual) in &seen {
+    for &(expected, actual) in &seen_counts {
         let line = StageDetail::Passes { expected, actual, most: max_iterations };
         if !details.contains(&line) && details.len() < 3 {
             details.push(line);
         }
     }
-    Some(new_observation(StageFault::Rounds(number), details, seen.len()))
+    Some(new_observation(StageFault::Rounds(number), details, seen_counts.len()))
 }
 
 /// Returns the explanation of steps whose later rounds use the integrator's positions instead of those after the first
@@ -182,11 +182,11 @@ fn explain_later_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanati
     if reaches(2) {
         return Some(new_observation(StageFault::BehindFirstRound, Vec::new(), wrong.len()));
     }
-    let mut seen = SecondPass::default();
+    let mut second_pass = SecondPass::default();
     wrong.iter().filter(|facts| facts.logged_passes().is_some_and(|(passes, _)| passes > 1)).for_each(|facts| {
-        seen.compare(scene, facts);
+        second_pass.compare(scene, facts);
     });
-    let fault = match seen {
+    let fault = match second_pass {
         SecondPass { unresolved, contacts, .. } if unresolved > 0 => {
             StageFault::Unresolved { all: unresolved == contacts }
         }

@@ -44,7 +44,7 @@ impl ParticleGroup {
     }
 
     fn contains(&self, other: &Self) -> bool {
-        other.particles.iter().all(|one| self.particles.contains(one))
+        other.particles.iter().all(|particle| self.particles.contains(particle))
     }
 }
 
@@ -102,7 +102,7 @@ impl<'a> FirstRound<'a> {
 
     /// Returns whether the end of the step shows the positions of the group after the first round.
     pub(super) fn is_visible(&self, group: &ParticleGroup) -> bool {
-        let is_own = |pair| pair_particles(self.scene, pair).iter().all(|one| group.particles.contains(one));
+        let is_own = |pair| pair_particles(self.scene, pair).iter().all(|particle| group.particles.contains(particle));
         self.rounds == 1 || self.facts.fits_motion(self.scene, self.second, &self.end.positions, is_own)
     }
 
@@ -207,14 +207,15 @@ impl<'a> FirstRound<'a> {
             zone.particles.iter().enumerate().filter(is_in).map(|(_, one)| *one).collect::<Vec<usize>>()
         });
         for part in parts {
-            let left: Vec<usize> = zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
+            let other_particles: Vec<usize> =
+                zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
             let leads_there = |group: &ParticleGroup| {
                 let is_body = group.particles.len() > 1 || group.must_stop(self.scene);
                 let moved = self.moved_state(&[group]);
-                is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
+                is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &other_particles)
             };
             // A particle with the expected position was not omitted.
-            let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
+            let is_left = || other_particles.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
                 && [false, zone.has_half_plane]
                     .iter()
@@ -240,7 +241,7 @@ impl<'a> FirstRound<'a> {
         }
         let is_in_zone = |one: &usize| self.zones.iter().any(|zone| zone.particles.contains(one));
         let all = 0..self.scene.particles.len();
-        all.filter(|one| !is_in_zone(one) && !self.is_at(self.middle, *one)).collect()
+        all.filter(|particle| !is_in_zone(particle) && !self.is_at(self.middle, *particle)).collect()
     }
 
     /// Returns the ways to form several zones from a zone's contacts, in the order of the first contact of each.
@@ -281,7 +282,7 @@ impl<'a> FirstRound<'a> {
             ZoneResult::Wrong(WrongZones::KeepVelocities)
         } else if all().all(rests) {
             ZoneResult::Wrong(WrongZones::KeepPositions)
-        } else if all().any(|one| is_back(one) && rests(one) && !self.is_at(self.middle, *one)) {
+        } else if all().any(|particle| is_back(particle) && rests(particle) && !self.is_at(self.middle, *particle)) {
             ZoneResult::Wrong(WrongZones::PartlyStopped)
         } else {
             ZoneResult::Bent

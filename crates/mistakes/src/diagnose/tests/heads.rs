@@ -239,10 +239,10 @@ fn mistakes_of_different_traces_are_no_rivals() {
     let (one, other) = (row("loop-one-more", &[]), row("failsafe-no-rotation", &[]));
     let told = explain_together([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
     assert_eq!(told.len(), 2, "{told:#?}");
-    assert!(told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
+    assert!(told.iter().all(|explanation| explanation.same_as.is_empty()), "{told:#?}");
     // Mistakes that explain a trace only together are not alternatives either.
     let told = explain_together([[one.clone(), other.clone()].as_slice()], &[]);
-    assert!(told.len() == 2 && told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
+    assert!(told.len() == 2 && told.iter().all(|explanation| explanation.same_as.is_empty()), "{told:#?}");
     // A trace that allows both mistakes lists both.
     let both = Explanation { same_as: vec![other.key.clone()], ..one.clone() };
     let told = explain_together([std::slice::from_ref(&both); 3], &[]);
@@ -258,7 +258,7 @@ fn a_contact_vector_has_one_mistake() {
     let told_beside = |first: &str, second: &str| {
         let (first, second) = (vec![row(first, &[])], vec![row(second, &[])]);
         let told = explain_together([&first, &first, &second].map(Vec::as_slice), &[]);
-        told.into_iter().map(|one| one.key).collect::<Vec<_>>()
+        told.into_iter().map(|explanation| explanation.key).collect::<Vec<_>>()
     };
     assert_eq!(told_beside("pe-contact-nearest-end", "pe-contact-second-end"), ["pe-contact-nearest-end"]);
     assert_eq!(told_beside("pe-contact-nearest-end", "ph-contact-at-start").len(), 2, "another kind of pair");
@@ -361,7 +361,7 @@ fn a_scene_alone_does_not_name_what_all_scenes_contradict() {
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert!(likely[0].is_unexplained());
     let shown = correct_trace(&traces[0], &likely, &[]).explanations;
-    assert_eq!(shown.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["unexplained"]);
+    assert_eq!(shown.iter().map(|explanation| explanation.key.as_str()).collect::<Vec<_>>(), ["unexplained"]);
     let of_edges = letter(Subject::EdgeOverlap, "one");
     let other = [first, of_edges.clone()];
     assert_eq!(correct_trace(&other, &likely, &[]).explanations[1], of_edges, "the other polynomial keeps its guess");

@@ -28,7 +28,7 @@ fn a_mistake_next_to_another_is_reported_once() {
         assert!(named <= 1, "{list:#?}");
     }
     let told = explain_together(explained.iter().map(Vec::as_slice), &[]);
-    let mut keys: Vec<&str> = told.iter().map(|one| one.key.as_str()).collect();
+    let mut keys: Vec<&str> = told.iter().map(|explanation| explanation.key.as_str()).collect();
     keys.sort_unstable();
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
@@ -106,7 +106,7 @@ fn a_trace_that_was_kept_in_part_is_explained() {
     let explained = |most: usize| {
         let mut kept = KeptTrace::new(most);
         std::io::copy(&mut kept.keep_from(&trace[..]), &mut std::io::sink()).expect("read");
-        explain_kept_trace(&scene, &kept).into_iter().map(|one| one.key).collect::<Vec<_>>()
+        explain_kept_trace(&scene, &kept).into_iter().map(|explanation| explanation.key).collect::<Vec<_>>()
     };
     assert_eq!(explained(trace.len()), [row.id]);
     assert_eq!(explained(trace.len() * 3 / 4), [row.id]);

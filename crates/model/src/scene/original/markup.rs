@@ -268,7 +268,7 @@ mod tests {
     fn names(text: &str) -> Result<Option<Vec<String>>, &'static str> {
         let text = join_lines(text.as_bytes());
         let children = parse(&text)?;
-        Ok(children.map(|all| all.iter().map(|one| String::from_utf8_lossy(one.name).into_owned()).collect()))
+        Ok(children.map(|all| all.iter().map(|element| String::from_utf8_lossy(element.name).into_owned()).collect()))
     }
 
     fn value(text: &str) -> Vec<u8> {

@@ -53,7 +53,7 @@ pub fn find_exact_first_time(polynomials: &[&[f64]]) -> ExactAnswer {
     }
     // A polynomial that is positive on the whole interval (0, infinity) does not matter.
     let polynomials: Vec<IntegerPolynomial> =
-        polynomials.into_iter().filter(|one| !one.is_always_positive_after_zero()).collect();
+        polynomials.into_iter().filter(|polynomial| !polynomial.is_always_positive_after_zero()).collect();
     let zeros =
         polynomials.iter().fold(IntegerPolynomial::one(), |product, one| product.unite(&one.square_free_part()));
     let mut roots = roots_within_step(&zeros);

@@ -91,7 +91,7 @@ impl<'a> Scenes<'a, '_> {
 
     /// Returns the scenes whose verdicts have the same cause as this scene's.
     fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
-        let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
+        let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|scene_grade| scene_grade.scene == scene.scene);
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
 
@@ -129,7 +129,7 @@ impl<'a> Scenes<'a, '_> {
             && first.scene == scene.scene
             && !alike.is_empty()
         {
-            let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
+            let names: Vec<&str> = alike.iter().map(|scene_grade| scene_grade.scene.as_str()).collect();
             let (many, names) = (format_count(alike.len() as u64, "more scene"), list_first(&names, MAX_NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }

@@ -105,7 +105,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
         WrongResponses::Nothing => "contacts change nothing".to_owned(),
         WrongResponses::Unchanged(all) => {
             let list: Vec<String> =
-                all.iter().map(|one| format!("the {} of {}", singular(one.quantity), body(one))).collect();
+                all.iter().map(|change| format!("the {} of {}", singular(change.quantity), body(change))).collect();
             format!("unchanged by contacts: {}", list.join(", "))
         }
         WrongResponses::Across(all) => format!("{} also across the contact vector", name_changed_objects(all)),
@@ -117,7 +117,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
 
 /// Names the objects whose quantities change wrongly.
 fn name_changed_objects(all: &[ChangedQuantity]) -> String {
-    let quantities = distinct(all.iter().map(|one| one.quantity));
+    let quantities = distinct(all.iter().map(|change| change.quantity));
     let bodies = distinct(all.iter().map(body));
     match (&quantities[..], &bodies[..]) {
         ([one], [body]) => format!("the {} of {body} changes", singular(*one)),

@@ -45,12 +45,12 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     }
     let of_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
-        let common: Vec<&str> = fault.traits.iter().map(|one| one.description.as_str()).collect();
+        let common: Vec<&str> = fault.traits.iter().map(|pair_trait| pair_trait.description.as_str()).collect();
         let sentence = format!("{} {names} are {}", fault.share, describe_times(fault.times));
         if common.is_empty() {
             return sentence;
         }
-        let all = if fault.traits.iter().all(|one| one.exceptions == 0) { "all" } else { "nearly all" };
+        let all = if fault.traits.iter().all(|pair_trait| pair_trait.exceptions == 0) { "all" } else { "nearly all" };
         format!("{sentence}. In {all} of these, {}", common.join(", or "))
     };
     let sentences: Vec<String> = faults.iter().map(of_fault).collect();

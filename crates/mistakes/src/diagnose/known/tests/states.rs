@@ -48,7 +48,7 @@ fn scenes() -> Vec<(String, Scene)> {
         }
     }
     // The programs of a milestone only get scenes that they can run.
-    let is_met = |name: &str, scene: &Scene| scene.assignments().any(|one| name.starts_with(one.key()));
+    let is_met = |name: &str, scene: &Scene| scene.assignments().any(|explanation| name.starts_with(explanation.key()));
     scenes.retain(|(name, scene)| scene.particles.len() <= MOST_PARTICLES && is_met(name, scene));
     scenes
 }

@@ -59,7 +59,7 @@ impl Sweep {
     pub fn copy_order(&self, order: &mut SweepOrder) {
         for (list, boxes) in [(&mut order.particles, &self.particle_boxes), (&mut order.edges, &self.edge_boxes)] {
             list.clear();
-            list.extend(boxes.iter().map(|one| one.body));
+            list.extend(boxes.iter().map(|bounds| bounds.body));
         }
     }
 
@@ -136,9 +136,9 @@ fn sort(
 ) {
     if boxes.is_empty() {
         boxes.extend((0..count as u32).map(make));
-        return introsort::sort(boxes, |one| one.low[0]);
+        return introsort::sort(boxes, |bounds| bounds.low[0]);
     }
-    boxes.iter_mut().for_each(|one| *one = make(one.body));
+    boxes.iter_mut().for_each(|bounds| *bounds = make(bounds.body));
     // Keys are integers in the order of the position on x, then of the previous search, so that each body is moved only
     // once.
     keys.clear();
