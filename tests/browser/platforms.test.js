@@ -167,7 +167,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   await form.getByLabel("Its host").fill("moodle.example.org");
   assert.equal(await form.getByLabel("Public keyset").inputValue(), "https://moodle.example.org/mod/lti/certs.php");
   assert.ok(!(await form.getByLabel("Public keyset").isVisible()));
-  await form.getByText("Its addresses").click();
+  await form.getByText("Its URLs").click();
   for (const [label, value] of [
     ["Name here", "lms"],
     ["Issuer", place],
@@ -195,7 +195,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   page.setDefaultTimeout(120_000);
   await page.getByRole("heading", { name: "Which course is this?" }).waitFor();
   await checkAccessibility(page);
-  assert.equal(await page.getByLabel("Name in addresses").inputValue(), "phys-1");
+  assert.equal(await page.getByLabel("Name in URLs").inputValue(), "phys-1");
   await page.getByRole("button", { name: "Make the course" }).click();
   // There is no assignment yet, so it is created during the choice.
   await page.getByLabel("Title").fill("Milestone one");

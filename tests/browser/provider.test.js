@@ -79,7 +79,7 @@ test("people sign in where their organization has them do so", async () => {
   await admin.getByRole("button", { name: "Sign in" }).click();
   await admin.goto(`${address}/admin`);
   const course = admin.locator("form[action='/admin/courses']");
-  await course.getByLabel("Name in addresses").fill("physics");
+  await course.getByLabel("Name in URLs").fill("physics");
   await course.getByLabel("Title").fill("Physics");
   await course.getByRole("button").click();
   await admin.goto(`${address}/c/physics/members`);

@@ -131,11 +131,11 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.goto(`${address}/admin`);
   await checkAccessibility(page);
   const course = page.locator("form[action='/admin/courses']");
-  await course.getByLabel("Name in addresses").fill("physics");
+  await course.getByLabel("Name in URLs").fill("physics");
   await course.getByLabel("Title").fill("Physics <b>of</b> spheres");
   await course.getByRole("button").click();
   await page.getByRole("heading", { name: "Physics <b>of</b> spheres" }).waitFor();
-  await page.getByLabel("Name in addresses").fill("m1");
+  await page.getByLabel("Name in URLs").fill("m1");
   await page.getByLabel("Title").fill("Milestone one");
   await page.getByRole("button", { name: "Create the assignment" }).click();
   await page.getByLabel("Suite file").setInputFiles(join(folder, "suite.tar.gz"));

@@ -55,7 +55,7 @@ impl Instruments {
         InFlight(self.in_flight.clone())
     }
 
-    /// Counts the answer to a request. `route` is the route's template, not the address, so that the number of series
+    /// Counts the answer to a request. `route` is the route's template, not the URL, so that the number of series
     /// is limited.
     pub fn count_answer(&self, method: &str, route: &str, status: u16, took: Duration) {
         self.requests.with_label_values(&[method, route, &status.to_string()]).inc();

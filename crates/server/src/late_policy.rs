@@ -47,14 +47,14 @@ impl LatePolicy {
     /// `None` means that the submission is in time, or that the assignment has no rule for late submissions.
     pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // The delay is at most the allowed late days, even if an extension was withdrawn. Earlier late uploads keep
+        // The delay is at max_days the allowed late days, even if an extension was withdrawn. Earlier late uploads keep
         // their deduction even if late uploads are no longer accepted.
-        let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
+        let max_days = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
             days += 1;
         }
-        let days = days.min(most);
+        let days = days.min(max_days);
         let percent = days.saturating_mul(self.late_percent.into()).min(100);
         (days > 0 && (self.late_days > 0 || percent > 0)).then_some(Lateness { days, percent })
     }
@@ -68,10 +68,10 @@ impl Lateness {
         Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// Returns the points that are left after the deduction from the grader's points.
+    /// Returns the points that are reduce after the deduction from the grader's points.
     pub(crate) fn left_of(self, points: &str) -> String {
-        let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
-        points.parse().map_or_else(|_| points.to_owned(), left)
+        let reduce = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
+        points.parse().map_or_else(|_| points.to_owned(), reduce)
     }
 }
 

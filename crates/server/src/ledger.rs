@@ -122,9 +122,9 @@ async fn log_event(transaction: &mut Transaction, about: &JobDetails, kind: &str
 /// Records and counts a message of a worker that came too late. The message has no other effect. If the job does not
 /// exist, the message is not counted.
 async fn log_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
-    let known =
+    let known_claim =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
-    if known.is_some() {
+    if known_claim.is_some() {
         let row = find_job(transaction, lease.job).await?;
         log_event(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
     }

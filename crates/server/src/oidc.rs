@@ -131,7 +131,7 @@ impl Provider {
     ///
     /// # Errors
     ///
-    /// Fails if the issuer is not an HTTPS address. For tests, HTTP is accepted if the provider is on this machine.
+    /// Fails if the issuer is not an HTTPS URL. For tests, HTTP is accepted if the provider is on this machine.
     pub fn new(
         issuer: String,
         client: String,
@@ -139,7 +139,7 @@ impl Provider {
         label: Option<String>,
         domain: Option<String>,
     ) -> anyhow::Result<Self> {
-        let address = Url::parse(&issuer).with_context(|| format!("{issuer} is not an address"))?;
+        let address = Url::parse(&issuer).with_context(|| format!("{issuer} is not a URL"))?;
         let host = address.host_str().unwrap_or_default();
         let over_http = address.scheme() == "http" && matches!(host, "127.0.0.1" | "[::1]" | "localhost");
         ensure(over_http || address.scheme() == "https", anyhow!("the issuer must be https://..., not {issuer}"))?;
@@ -179,7 +179,7 @@ impl Provider {
     }
 
     /// Returns a client with a configuration that was read at most `age` ago. The provider sends people back to the
-    /// address `redirect`.
+    /// URL `redirect`.
     async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
         let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
@@ -190,7 +190,7 @@ impl Provider {
             .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
     }
 
-    /// Returns the provider's address at which a person signs in.
+    /// Returns the provider's URL at which a person signs in.
     ///
     /// # Errors
     ///

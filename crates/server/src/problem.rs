@@ -110,14 +110,14 @@ problems! {
         detail,
         "correct the suite and upload it again; the assignment keeps its suite";
     /// The upload is larger than allowed.
-    too_large(most: u64): 413, "too-large", "Too large",
-        format!("more than the {} that are allowed", format_size(most)),
+    too_large(max_bytes: u64): 413, "too-large", "Too large",
+        format!("more than the {} that are allowed", format_size(max_bytes)),
         "send less: leave out build folders, and traces in an archive of sources";
     /// A request other than an upload is too large.
-    too_long(most: usize): 413, "too-large", "Too large",
-        format!("more than the {} that are allowed", format_size(most as u64)),
+    too_long(max_bytes: usize): 413, "too-large", "Too large",
+        format!("more than the {} that are allowed", format_size(max_bytes as u64)),
         "send less in one request";
-    /// The address does not support the method.
+    /// The URL does not support the method.
     wrong_method(method: &str): 405, "wrong-method", "Not supported here",
         format!("this address does not accept {method}"),
         "go back, and use the button on the page; programs find the methods in /api/openapi.json";

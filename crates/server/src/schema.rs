@@ -31,7 +31,7 @@ macro_rules! texts {
 }
 
 texts! {
-    /// A short name that is used in addresses.
+    /// A short name that is used in URLs.
     Slug, r"^[a-z0-9][a-z0-9._-]*$", 60, "physics";
     /// A name that people see, without invisible characters and without spaces at its ends.
     Title, "^[^\\s\\x00-\\x1f\\x7f-\\x9f\\xad\\u115f\\u1160\\u180e\
@@ -46,7 +46,7 @@ texts! {
     FileName, r"^[A-Za-z0-9_][A-Za-z0-9._-]*$", 100, "FOSSSim";
     /// An identifier from another system, without control characters.
     Word, r"^[^\x00-\x1f\x7f-\x9f]+$", 255, "10000000000001";
-    /// An HTTPS address to which the service sends requests.
+    /// An HTTPS URL to which the service sends requests.
     HttpsUrl, r"^https://[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?(/[A-Za-z0-9._~/-]*)?$",
         2000, "https://lms.example.org/mod/lti/auth.php";
     /// A host name, with the port if it is not 443.

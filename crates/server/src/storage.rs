@@ -53,8 +53,8 @@ impl Storage {
 
     async fn check_writable_now(&self) -> Result<(), Problem> {
         let mut last = self.last.lock().await;
-        let known = last.filter(|(at, _)| at.elapsed() < CHECK_LIFETIME);
-        let fault = match known {
+        let recent = last.filter(|(at, _)| at.elapsed() < CHECK_LIFETIME);
+        let fault = match recent {
             Some((_, fault)) => fault,
             None => {
                 let fault = self.find_fault().await;

@@ -142,7 +142,7 @@ impl Store {
     /// Fails if the folder can't be created.
     pub fn folder(folder: &Path) -> Result<Self, StoreError> {
         std::fs::create_dir_all(folder)
-            .map_err(|error| StoreError::Failed(format!("cannot make {}: {error}", folder.display())))?;
+            .map_err(|error| StoreError::Failed(format!("cannot create the folder {}: {error}", folder.display())))?;
         let objects = LocalFileSystem::new_with_prefix(folder)?.with_fsync(true);
         Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
@@ -152,7 +152,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Fails if the address is invalid, or this program was built without support for buckets.
+    /// Fails if the URL is invalid, or this program was built without support for buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
         let location = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = location.split_once('/').unwrap_or((location, ""));

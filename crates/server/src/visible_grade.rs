@@ -32,8 +32,8 @@ const VERDICT_TEXTS: [(&str, &str, char); 14] = [
 
 /// Returns the text for a verdict's code. A grader of another version may report codes that are unknown here.
 pub fn verdict(code: &str) -> &str {
-    let known = VERDICT_TEXTS.iter().find(|verdict| verdict.0 == code);
-    known.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
+    let found = VERDICT_TEXTS.iter().find(|verdict| verdict.0 == code);
+    found.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
 }
 
 /// A grade without the withheld groups.
@@ -103,8 +103,8 @@ fn list_failed(report: &GradeFile) -> String {
 fn parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
-    let known = |scene: &SceneInFile| VERDICT_TEXTS.iter().find(|verdict| scene.code == verdict.0);
-    let letter = |scene: &SceneInFile| known(scene).map_or('e', |verdict| verdict.2);
+    let find_text = |scene: &SceneInFile| VERDICT_TEXTS.iter().find(|verdict| scene.code == verdict.0);
+    let letter = |scene: &SceneInFile| find_text(scene).map_or('e', |verdict| verdict.2);
     let rows = groups.clone().map(|group| group.scenes.iter().map(letter).collect::<String>());
     let parts = GradeParts {
         groups: groups.map(|group| (group.name.clone(), group.points)).collect(),

@@ -87,7 +87,7 @@ pub(super) struct ServiceArguments {
     /// proxy with HTTPS in front.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
-    /// The public address of the server, such as https://grades.example.org. With https, cookies are sent only over
+    /// The public URL of the server, such as https://grades.example.org. With https, cookies are sent only over
     /// HTTPS.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = parse_public_url)]
     pub(super) public_url: Option<String>,
@@ -159,12 +159,12 @@ pub(super) struct ProviderArguments {
     pub(super) oidc_domain: Option<String>,
 }
 
-/// Returns the scheme and host of an address that an administrator typed.
+/// Returns the scheme and host of a URL that an administrator typed.
 fn parse_public_url(text: &str) -> Result<String, String> {
     let authority = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = authority.map(|place| place.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
-        return Err("an address must be https://HOST or http://HOST:PORT without a path".to_owned());
+        return Err("the URL must be https://HOST or http://HOST:PORT without a path".to_owned());
     }
     Ok(text.trim_end_matches('/').to_owned())
 }
@@ -177,7 +177,7 @@ pub(super) struct AdminLinkArguments {
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
-    /// The server's public address. The default is the address with which the server was last started.
+    /// The server's public URL. The default is the URL with which the server was last started.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = parse_public_url)]
     pub(super) public_url: Option<String>,
 }
@@ -214,10 +214,10 @@ pub(super) struct RestoreArguments {
 }
 
 /// Checks whether a server or a worker is healthy, and reports the result by the exit code, for probes. A server is
-/// given by its address, and a worker by its data folder.
+/// given by its URL, and a worker by its data folder.
 #[derive(Debug, Args)]
 pub(super) struct HealthArguments {
-    /// The server's address.
+    /// The server's URL.
     #[arg(long, value_name = "URL", value_parser = parse_public_url)]
     pub(super) server: Option<String>,
     /// The worker's data folder.
@@ -250,7 +250,7 @@ pub(super) struct WorkerArguments {
     /// The number of parallel gradings. The default is one per core.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
-    /// The address of a server on another machine for which this worker grades. The worker then needs no database.
+    /// The URL of a server on another machine for which this worker grades. The worker then needs no database.
     #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = parse_public_url)]
     pub(super) server: Option<String>,
     /// The file with the worker's token, which an administrator creates on the page "Administration".

@@ -55,7 +55,7 @@ impl ServiceFolders {
                 .recursive(true)
                 .mode(0o700)
                 .create(data)
-                .with_context(|| format!("cannot make {}", data.display()))?;
+                .with_context(|| format!("cannot create the folder {}", data.display()))?;
         }
         let metadata = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?;
         if !metadata.is_dir() {
@@ -86,7 +86,7 @@ impl ServiceFolders {
     /// Creates the folders of uploads and jobs, and removes old leftovers of killed servers and workers.
     pub(super) fn clear(&self) -> Result<()> {
         for folder in [self.incoming.clone(), self.data.join("work")] {
-            fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
+            fs::create_dir_all(&folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
             for entry in fs::read_dir(&folder)?.flatten() {
                 let modified = entry.metadata().and_then(|data| data.modified());
                 if modified.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > LEFTOVER_AGE)) {
@@ -108,7 +108,7 @@ impl ServiceFolders {
         Ok((database, address))
     }
 
-    /// Returns the address of the database that the options name, or the one in the data folder.
+    /// Returns the URL of the database that the options name, or the one in the data folder.
     pub(super) fn database_address(&self, storage: &StorageArguments) -> Address {
         database_address_in(storage, &self.data)
     }

@@ -34,7 +34,7 @@ const DAY_SECONDS: u64 = 24 * 3600;
 /// The number of bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// The name of the file in the data folder that contains the server's public address.
+/// The name of the file in the data folder that contains the server's public URL.
 const ADDRESS_FILE: &str = "address";
 
 /// The maximum time to wait for the grader's answer.
@@ -132,7 +132,7 @@ fn read_provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     Ok(Some(Provider::new(issuer.clone(), client, secret, oidc_label.clone(), oidc_domain.clone())?))
 }
 
-/// Prints the server's address and a link to sign in to standard output. The log, on standard error, contains no
+/// Prints the server's URL and a link to sign in to standard output. The log, on standard error, contains no
 /// secrets. If the server has the example course, this also prints the path of the flawed program.
 async fn print_greeting(
     app: &App,
@@ -248,8 +248,8 @@ async fn open_service(storage: &StorageArguments, public: String) -> Result<(App
 }
 
 pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
-    let known = || std::fs::read_to_string(arguments.storage.data.join(ADDRESS_FILE)).ok();
-    let public = arguments.public_url.clone().or_else(known).unwrap_or_else(|| "http://127.0.0.1:8080".to_owned());
+    let last_used = || std::fs::read_to_string(arguments.storage.data.join(ADDRESS_FILE)).ok();
+    let public = arguments.public_url.clone().or_else(last_used).unwrap_or_else(|| "http://127.0.0.1:8080".to_owned());
     let (app, database) = open_service(&arguments.storage, public).await?;
     let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
     println!("{}", app.welcome_address(&link));

@@ -1,12 +1,12 @@
-//! The address of the database, which is printed only without its password.
+//! The URL of the database, which is printed only without its password.
 use std::{fmt, path::PathBuf, str::FromStr};
 
-/// A database's address as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.
+/// A database's URL as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.
 #[derive(Clone, PartialEq, Eq)]
 pub enum Address {
     /// A SQLite database file.
     Sqlite(PathBuf),
-    /// The whole address of a PostgreSQL database, which may contain a password.
+    /// The whole URL of a PostgreSQL database, which may contain a password.
     Postgres(String),
 }
 
@@ -54,15 +54,15 @@ mod tests {
 
     #[test]
     fn an_address_is_read_and_shown_without_its_password() {
-        let shown = |text: &str| {
+        let print = |text: &str| {
             let address: Address = text.parse().expect("an address");
             assert_eq!(format!("{address}"), format!("{address:?}"));
             address.to_string()
         };
-        assert_eq!(shown("sqlite:data/fosssim.db"), "sqlite:data/fosssim.db");
-        assert_eq!(shown("sqlite:///srv/fosssim.db"), "sqlite:/srv/fosssim.db");
-        assert_eq!(shown("postgres://me:geheim@db.example.org/course"), "postgres://db.example.org/course");
-        assert_eq!(shown("postgresql://me:a@b@db/course?password=geheim&sslmode=require"), "postgres://db/course");
+        assert_eq!(print("sqlite:data/fosssim.db"), "sqlite:data/fosssim.db");
+        assert_eq!(print("sqlite:///srv/fosssim.db"), "sqlite:/srv/fosssim.db");
+        assert_eq!(print("postgres://me:geheim@db.example.org/course"), "postgres://db.example.org/course");
+        assert_eq!(print("postgresql://me:a@b@db/course?password=geheim&sslmode=require"), "postgres://db/course");
         let error = "mysql://me:geheim@db/course".parse::<Address>().expect_err("no such engine");
         assert!(!error.contains("geheim"), "{error}");
         assert!("sqlite:".parse::<Address>().is_err());

@@ -76,13 +76,13 @@ pub enum MigrateError {
 /// Fails if the database does not answer.
 pub async fn read_version(database: &Database) -> Result<i64, DbError> {
     let mut transaction = database.read().await?;
-    let there = match transaction.dialect() {
+    let table_count = match transaction.dialect() {
         Dialect::Sqlite => "SELECT count(*) AS n FROM sqlite_master WHERE name = 'schema_change'",
         Dialect::Postgres => {
             "SELECT count(*) AS n FROM pg_tables WHERE schemaname = current_schema() AND tablename = 'schema_change'"
         }
     };
-    if transaction.one(there, values![]).await?.int("n")? == 0 {
+    if transaction.one(table_count, values![]).await?.int("n")? == 0 {
         return Ok(0);
     }
     transaction.one("SELECT coalesce(max(number), 0) AS n FROM schema_change", values![]).await?.int("n")

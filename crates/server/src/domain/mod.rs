@@ -92,7 +92,7 @@ pub struct Options {
     pub incoming: PathBuf,
     /// The number of free bytes on the disk below which uploads are rejected.
     pub low_water: u64,
-    /// The public address of the service.
+    /// The public URL of the service.
     pub public: String,
     /// The source of a client's address: the connection itself, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
@@ -152,12 +152,12 @@ impl App {
         &self.0.instruments
     }
 
-    /// Returns the address of a link that signs in once.
+    /// Returns the URL of a link that signs in once.
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public, secret.reveal())
     }
 
-    /// Returns whether the public address uses HTTPS.
+    /// Returns whether the public URL uses HTTPS.
     pub fn is_secure(&self) -> bool {
         self.public.starts_with("https://")
     }

@@ -20,7 +20,7 @@ pub struct Account {
     /// The account's ID.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The login: the account's name in addresses and tables.
+    /// The login: the account's name in URLs and tables.
     pub login: String,
     /// The name of the account's owner.
     pub name: String,
@@ -31,7 +31,7 @@ pub struct Account {
 /// A course on this server.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Course {
-    /// The short name of the course, which is used in addresses.
+    /// The short name of the course, which is used in URLs.
     pub slug: String,
     /// The full name of the course.
     pub title: String,
@@ -42,7 +42,7 @@ pub struct Course {
 pub struct Assignment {
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The short name of the assignment, which is used in addresses.
+    /// The short name of the assignment, which is used in URLs.
     pub slug: String,
     /// The full name of the assignment.
     pub title: String,
@@ -65,7 +65,7 @@ pub struct Submission {
     pub id: i64,
     /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
-    /// The short name of the assignment, which is used in addresses.
+    /// The short name of the assignment, which is used in URLs.
     pub assignment: String,
     /// The assignment's title.
     pub title: String,

@@ -95,7 +95,7 @@ impl ServiceAnswer {
         let text = format!("{} {excerpt}", self.status);
         match self.status {
             200..=299 => Ok(self),
-            // Redirections are not followed: only the address that an administrator registered is called.
+            // Redirections are not followed: only the URL that an administrator registered is called.
             300..=399 => Err(ServiceFault::Rejected(format!("{} redirects elsewhere", self.status))),
             408 | 425 | 429 | 500.. => Err(ServiceFault::Unavailable { reason: text, after: self.after }),
             _ => Err(ServiceFault::Rejected(text)),
@@ -216,8 +216,8 @@ impl Client {
             return Err(ServiceFault::Rejected("the platform's token is invalid".to_owned()));
         }
         let lifetime = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(RENEWAL_MARGIN);
-        let known = (token.access_token.clone(), Instant::now() + lifetime);
-        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, known);
+        let cached = (token.access_token.clone(), Instant::now() + lifetime);
+        self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, cached);
         Ok(token.access_token)
     }
 }

@@ -99,11 +99,11 @@ pub struct Arrival {
     pub resource: Option<Resource>,
     /// The assignment that the link names.
     pub assignment: Option<String>,
-    /// The address of the link's column in the grade book; `None` if scores may not be sent there.
+    /// The URL of the link's column in the grade book; `None` if scores may not be sent there.
     pub line_item: Option<String>,
-    /// The address for creating columns; `None` if this is not permitted.
+    /// The URL for creating columns; `None` if this is not permitted.
     pub line_items: Option<String>,
-    /// The address of the course's list of members; `None` if the platform does not offer it.
+    /// The URL of the course's list of members; `None` if the platform does not offer it.
     pub memberships: Option<String>,
     /// The platform's request to choose what a new link opens.
     pub deep_linking: Option<DeepLinking>,
@@ -135,7 +135,7 @@ pub struct Resource {
 /// The parameters with which a platform requests a new link (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
-    /// The platform's address for the answer.
+    /// The platform's URL for the answer.
     pub deep_link_return_url: String,
     /// The types of items that the platform accepts.
     #[serde(default)]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use url::Url;
 use utoipa::ToSchema;
 
-/// The addresses of a platform. Platforms show them on their pages about external tools.
+/// The URLs of a platform. Platforms show them on their pages about external tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 #[schema(as = PlatformWish)]
@@ -19,16 +19,16 @@ pub struct PlatformSettings {
     /// The platform's name for this service (called "client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
-    /// The address at which the platform signs people in (called "authentication request URL").
+    /// The URL at which the platform signs people in (called "authentication request URL").
     #[schema(value_type = HttpsUrl)]
     pub login_url: String,
-    /// The address at which the platform issues tokens for its services (called "access token URL").
+    /// The URL at which the platform issues tokens for its services (called "access token URL").
     #[schema(value_type = HttpsUrl)]
     pub token_url: String,
-    /// The address of the platform's public keys (called "public keyset URL").
+    /// The URL of the platform's public keys (called "public keyset URL").
     #[schema(value_type = HttpsUrl)]
     pub keys_url: String,
-    /// The audience in requests for tokens; null if it is the address that issues tokens.
+    /// The audience in requests for tokens; null if it is the URL that issues tokens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
@@ -36,7 +36,7 @@ pub struct PlatformSettings {
     /// deployment's ID.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
-    /// Hosts of the platform's services, in addition to the hosts of the other addresses.
+    /// Hosts of the platform's services, in addition to the hosts of the other URLs.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<Host>, max_items = 50)]
     pub hosts: Vec<String>,
@@ -50,12 +50,12 @@ pub struct Platform {
     pub(crate) id: i64,
     /// The platform's name on this server.
     pub name: String,
-    /// The registered addresses and deployments.
+    /// The registered URLs and deployments.
     #[serde(flatten)]
     pub settings: PlatformSettings,
 }
 
-/// Parses an address that this service may call: HTTPS with a host, and no user name, password or fragment.
+/// Parses a URL that this service may call: HTTPS with a host, and no user name, password or fragment.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let is_secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
@@ -63,7 +63,7 @@ pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     (is_secure && is_plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
-/// Returns the host and port of an address, in the form of an origin.
+/// Returns the host and port of a URL, in the form of an origin.
 fn origin(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),
@@ -124,7 +124,7 @@ impl Platform {
         hosts.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// Returns an address of one of the platform's services. Only registered hosts are allowed, so that a message can't
+    /// Returns a URL of one of the platform's services. Only registered hosts are allowed, so that a message can't
     /// make this service call other hosts, or send its token to them.
     pub(crate) fn service_address(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;

@@ -57,22 +57,22 @@ fn usable_keys(set: KeySet) -> Vec<PublicKey> {
 
 impl PlatformKeys {
     fn find_keys(&self, platform: &Platform) -> Option<KnownKeys> {
-        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
+        let all_keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        all_keys.get(&platform.id).filter(|all_keys| all_keys.address == platform.settings.keys_url).cloned()
     }
 
     /// Returns the platform's key that is called `kid`.
     pub(super) async fn fetch(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
-        let find_key = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
-        let known = self.find_keys(platform);
-        if let Some(known) = &known {
-            if known.read_at.is_some_and(|at| at.elapsed() < KEY_LIFETIME)
-                && let Some(key) = find_key(known)
+        let find_key = |cached: &KnownKeys| cached.keys.iter().find(|key| key.kid == kid).cloned();
+        let cached = self.find_keys(platform);
+        if let Some(cached) = &cached {
+            if cached.read_at.is_some_and(|at| at.elapsed() < KEY_LIFETIME)
+                && let Some(key) = find_key(cached)
             {
                 return Ok(key);
             }
-            if known.requested_at.elapsed() < MIN_PAUSE {
-                return find_key(known).ok_or(Rejection::UnknownKey);
+            if cached.requested_at.elapsed() < MIN_PAUSE {
+                return find_key(cached).ok_or(Rejection::UnknownKey);
             }
         }
         let answer = client.get(platform, &platform.settings.keys_url).await;
@@ -82,7 +82,7 @@ impl PlatformKeys {
             Ok(keys) => KnownKeys { address, keys, read_at: Some(now), requested_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
-                let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE_LIFETIME));
+                let before = cached.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE_LIFETIME));
                 let none = || KnownKeys { address, keys: Vec::new(), read_at: None, requested_at: now };
                 KnownKeys { requested_at: now, ..before.unwrap_or_else(none) }
             }

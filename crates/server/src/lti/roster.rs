@@ -72,7 +72,7 @@ fn to_person(member: Member) -> Option<LtiPerson> {
     })
 }
 
-/// Returns the address of the next page according to the header `Link` (RFC 8288).
+/// Returns the URL of the next page according to the header `Link` (RFC 8288).
 fn next_page(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {

@@ -95,9 +95,9 @@ pub(super) struct ReadyScore {
     pub(super) platform: Platform,
     /// The platform's identifier of the person.
     pub(super) subject: String,
-    /// The address of the link's column in the grade book; `None` if it is not known yet.
+    /// The URL of the link's column in the grade book; `None` if it is not known yet.
     pub(super) line_item: Option<String>,
-    /// The address at which the column is found or created if `line_item` is `None`.
+    /// The URL at which the column is found or created if `line_item` is `None`.
     pub(super) line_items: Option<String>,
     pub(super) resource: String,
     pub(super) slug: String,
@@ -173,7 +173,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
         let state = row.maybe_text("state")?.unwrap_or_default();
         is_waiting |= matches!(state.as_str(), "waiting" | "running");
         let withheld = row.maybe_text("shown")?.filter(|_| row.maybe_int("published_at").is_ok_and(|at| at.is_none()));
-        let (points, most) = match withheld.as_deref().and_then(VisibleGrade::from_text) {
+        let (points, max_points) = match withheld.as_deref().and_then(VisibleGrade::from_text) {
             Some(shown) => shown.into_points(),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
@@ -183,17 +183,17 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
             .or_else(|| points.map(|points| late.map_or(points.clone(), |late| late.left_of(&points))));
         let number =
             |text: Option<String>| text.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite());
-        if let (Some(points), Some(most)) = (number(points), number(most))
-            && most > 0.0
+        if let (Some(points), Some(max_points)) = (number(points), number(max_points))
+            && max_points > 0.0
             && best.is_none_or(|(best, _)| points >= best)
         {
-            best = Some((points.max(0.0), most));
+            best = Some((points.max(0.0), max_points));
         }
     }
     Ok(match best {
         _ if rows.is_empty() => None,
-        Some((points, most)) => Some(json!({
-            "scoreGiven": points, "scoreMaximum": most,
+        Some((points, max_points)) => Some(json!({
+            "scoreGiven": points, "scoreMaximum": max_points,
             "activityProgress": "Completed", "gradingProgress": "FullyGraded",
         })),
         None => {
@@ -210,7 +210,7 @@ pub(super) async fn record_sent(transaction: &mut Transaction, score: &ReadyScor
     transaction.execute(statement, values![score.order.link, score.order.account, score.stamp]).await?;
     let content = &score.content;
     let what = match (content["scoreGiven"].as_f64(), content["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{} of {} points", round_points(points), round_points(most)),
+        (Some(points), Some(max_points)) => format!("{} of {} points", round_points(points), round_points(max_points)),
         _ => content["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
     log_event(transaction, score.order, "score sent", &format!("{what}, to {}", score.platform.name)).await
@@ -242,7 +242,7 @@ async fn log_event(transaction: &mut Transaction, order: ScoreOrder, kind: &str,
 /// The state of a link's column in the grade book.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ColumnState {
-    /// The column is known; the value is its address.
+    /// The column is known; the value is its URL.
     Known(String),
     /// The column is unknown, and the caller must create it. Other callers wait until then.
     Unclaimed,
@@ -267,7 +267,7 @@ pub(super) async fn find_column(
     Ok(row.maybe_text("line_item")?.map_or(ColumnState::Claimed, ColumnState::Known))
 }
 
-/// Stores the address of the column that was found or created for a link. With `None`, another caller may try.
+/// Stores the URL of the column that was found or created for a link. With `None`, another caller may try.
 pub(super) async fn keep_column(
     transaction: &mut Transaction,
     link: i64,

@@ -173,7 +173,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Re
     }
 }
 
-/// Returns the address to which a column's scores are sent: the column's address with `/scores` at the end of the path
+/// Returns the URL to which a column's scores are sent: the column's URL with `/scores` at the end of the path
 /// (AGS 3.4).
 fn scores_address(line_item: &str) -> Result<String, ServiceFault> {
     let invalid = || ServiceFault::Rejected("the address of the grade book's column is invalid".to_owned());
@@ -231,9 +231,9 @@ async fn find_or_create(
     if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&score.resource)) {
         return Ok(item.id);
     }
-    let most = score.content["scoreMaximum"].as_f64().unwrap_or(100.0);
+    let max_points = score.content["scoreMaximum"].as_f64().unwrap_or(100.0);
     let item = json!({
-        "scoreMaximum": most, "label": score.title, "resourceId": score.slug, "resourceLinkId": score.resource,
+        "scoreMaximum": max_points, "label": score.title, "resourceId": score.slug, "resourceLinkId": score.resource,
     });
     const LINE_ITEM_TYPE: &str = "application/vnd.ims.lis.v2.lineitem+json";
     let request = ServiceRequest {

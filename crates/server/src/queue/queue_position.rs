@@ -68,6 +68,6 @@ async fn usual_millis(transaction: &mut Transaction, lane: Lane) -> Result<Optio
 pub async fn find_remaining_time(transaction: &mut Transaction, lane: Lane, job: i64) -> Result<Option<u64>, DbError> {
     let statement = "SELECT {now} - started_at AS took FROM job WHERE id = ? AND state = 'running'";
     let Some(row) = transaction.row(statement, values![job]).await? else { return Ok(None) };
-    let left = usual_millis(transaction, lane).await?.unwrap_or(0) - row.int("took")?;
-    Ok(u64::try_from(left).ok().map(|left| (left / 1000).max(1)))
+    let remaining = usual_millis(transaction, lane).await?.unwrap_or(0) - row.int("took")?;
+    Ok(u64::try_from(remaining).ok().map(|remaining| (remaining / 1000).max(1)))
 }

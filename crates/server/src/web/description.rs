@@ -52,7 +52,7 @@ pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Adds everything that applies to all operations: the ways to sign in, the form of names in addresses, and common
+/// Adds everything that applies to all operations: the ways to sign in, the form of names in URLs, and common
 /// answers.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
@@ -112,7 +112,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
 }
 
-/// Describes the parts of an address as parameters, and adds the answer for rejected requests.
+/// Describes the parts of a URL as parameters, and adds the answer for rejected requests.
 fn name_parts(path: &str, operation: &mut Operation) {
     let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
     let parts = names.map(|name| {
@@ -174,8 +174,8 @@ fn complete_parameter(parameter: &mut Parameter) {
         ObjectBuilder::new().schema_type(Type::String).pattern(Some(pattern)).into()
     };
     let (schema, text) = match (&parameter.parameter_in, parameter.name.as_str()) {
-        (ParameterIn::Path, "course") => (named("Slug"), "The course's name in addresses"),
-        (ParameterIn::Path, "assignment") => (named("Slug"), "The assignment's name in addresses"),
+        (ParameterIn::Path, "course") => (named("Slug"), "The course's name in URLs"),
+        (ParameterIn::Path, "assignment") => (named("Slug"), "The assignment's name in URLs"),
         (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
         (ParameterIn::Path, "name") => (named("Slug"), "The object's name"),

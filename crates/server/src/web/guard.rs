@@ -15,7 +15,7 @@ const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'sel
                       media-src blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
-/// The addresses to which learning platforms send people, always from the platform's site. The secret of the sign-in
+/// The URLs to which learning platforms send people, always from the platform's site. The secret of the sign-in
 /// proves that the request comes from the browser in which it began.
 const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 
@@ -97,7 +97,7 @@ pub(super) async fn add_headers(State(app): State<App>, request: Request, next: 
     response
 }
 
-/// Logs and counts a request by its route, never by its address, which may contain secrets.
+/// Logs and counts a request by its route, never by its URL, which may contain secrets.
 pub(super) async fn log_request(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     request.extensions_mut().insert(ArrivalTime(start));
@@ -107,10 +107,10 @@ pub(super) async fn log_request(State(app): State<App>, mut request: Request, ne
     let response = next.run(request).await;
     drop(in_flight);
     let (status, took) = (response.status().as_u16(), start.elapsed());
-    let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
+    let usual = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
     // Clients can invent methods, and each method would add a series to the metrics.
-    let counted = if known.contains(&method) { method.as_str() } else { "other" };
-    app.instruments().count_answer(counted, &route, status, took);
+    let method_label = if usual.contains(&method) { method.as_str() } else { "other" };
+    app.instruments().count_answer(method_label, &route, status, took);
     let took = took.as_millis();
     if response.status().is_server_error() {
         tracing::warn!(%method, route, status, took, "answered");

@@ -67,7 +67,7 @@ async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-/// The course in a request's address. Other parts of the address are ignored.
+/// The course in a request's URL. Other parts of the URL are ignored.
 #[derive(Deserialize)]
 struct CourseAddress {
     course: String,

@@ -80,13 +80,13 @@ pub(super) struct SignedIn;
 
 /// Reads a request's body. It must be small unless the sender is signed in.
 async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
-    let most = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
+    let limit = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
     let reading = async {
         let mut stream = request.into_body().into_data_stream();
         let mut bytes = Vec::new();
         while let Some(chunk) = stream.next().await {
             bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request was interrupted"))?);
-            ensure(bytes.len() <= most, Problem::too_long(most))?;
+            ensure(bytes.len() <= limit, Problem::too_long(limit))?;
         }
         Ok(bytes)
     };
@@ -98,11 +98,11 @@ async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
 fn fix_integers(value: &mut Value) {
     match value {
         Value::Number(number) => {
-            let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
+            let integer = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
             // The conversion is exact below 2^53.
             #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
-            if let (false, Some(whole)) = (number.is_i64() || number.is_u64(), whole) {
-                *value = Value::from(whole as i64);
+            if let (false, Some(integer)) = (number.is_i64() || number.is_u64(), integer) {
+                *value = Value::from(integer as i64);
             }
         }
         Value::Array(values) => values.iter_mut().for_each(fix_integers),

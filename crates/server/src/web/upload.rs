@@ -72,23 +72,23 @@ struct Inbox<'a> {
 }
 
 /// Receives the body of a request. The body is the file itself, or a form with a field `file`.
-pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
+pub(super) async fn receive(app: &App, request: Request, max_bytes: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_disk_space() {
-        return Err(reject(app, request, most, problem).await);
+        return Err(reject(app, request, max_bytes, problem).await);
     }
-    receive_into(&Inbox { incoming: &app.incoming, patience: app.patience }, request, most).await
+    receive_into(&Inbox { incoming: &app.incoming, patience: app.patience }, request, max_bytes).await
 }
 
 /// Rejects an upload before anything is stored. The body is still read, because many programs read the answer only
 /// after they have sent everything. Otherwise such a program would see only a broken connection.
-pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
+pub(super) async fn reject(app: &App, request: Request, max_bytes: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
     }
     let until = tokio::time::Instant::now() + app.patience * MAX_PAUSES;
     let mut body = request.into_body().into_data_stream();
     let mut size = 0;
-    while size <= most {
+    while size <= max_bytes {
         let pause = tokio::time::Instant::now() + app.patience;
         match tokio::time::timeout_at(until.min(pause), body.next()).await {
             Ok(Some(Ok(chunk))) => size += chunk.len() as u64,
@@ -109,7 +109,7 @@ pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
     pieces: usize,
-    most: u64,
+    max_bytes: u64,
 ) -> Result<(u64, [Option<String>; 3]), Problem> {
     let pieces: Vec<Result<Bytes, std::io::Error>> =
         body.chunks(pieces.max(1)).map(|piece| Ok(Bytes::copy_from_slice(piece))).collect();
@@ -117,7 +117,7 @@ pub async fn receive_form(
         .header(header::CONTENT_TYPE, "multipart/form-data; boundary=x")
         .body(Body::from_stream(futures_util::stream::iter(pieces)))
         .map_err(|_| Problem::fault())?;
-    let received = receive_into(&Inbox { incoming, patience: Duration::from_secs(60) }, request, most).await?;
+    let received = receive_into(&Inbox { incoming, patience: Duration::from_secs(60) }, request, max_bytes).await?;
     let size = std::fs::metadata(&received.file)?.len();
     Ok((size, [received.name, received.form, received.key]))
 }
@@ -133,12 +133,12 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
 
-async fn receive_into(inbox: &Inbox<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
-    let deadline = Instant::now() + inbox.patience * MAX_PAUSES + allowed_time(most);
+async fn receive_into(inbox: &Inbox<'_>, request: Request, max_bytes: u64) -> Result<ReceivedFile, Problem> {
+    let deadline = Instant::now() + inbox.patience * MAX_PAUSES + allowed_time(max_bytes);
     if !is_form(&request) {
-        ensure(announced_size(&request).is_none_or(|announced| announced <= most), Problem::too_large(most))?;
+        ensure(announced_size(&request).is_none_or(|announced| announced <= max_bytes), Problem::too_large(max_bytes))?;
         let body: Body = request.into_body();
-        let file = write_file(inbox, body.into_data_stream(), most, deadline, None).await?;
+        let file = write_file(inbox, body.into_data_stream(), max_bytes, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
     let buffered = BufferedBytes::default();
@@ -159,7 +159,7 @@ async fn receive_into(inbox: &Inbox<'_>, request: Request, most: u64) -> Result<
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(write_file(inbox, field, most, deadline, Some(&buffered)).await?);
+                file = Some(write_file(inbox, field, max_bytes, deadline, Some(&buffered)).await?);
             }
             Some("form") => form = Some(short_text(inbox, field).await?),
             Some("key") => key = Some(short_text(inbox, field).await?),
@@ -191,7 +191,7 @@ async fn short_text(inbox: &Inbox<'_>, mut field: axum::extract::multipart::Fiel
 async fn write_file<E: Display>(
     inbox: &Inbox<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
-    most: u64,
+    max_bytes: u64,
     deadline: Instant,
     buffered: Option<&BufferedBytes>,
 ) -> Result<TempPath, Problem> {
@@ -199,9 +199,9 @@ async fn write_file<E: Display>(
     let mut file = tokio::fs::File::from_std(file);
     let mut size = 0;
     loop {
-        let left = deadline.saturating_duration_since(Instant::now());
-        ensure(left != Duration::ZERO, Problem::too_slow())?;
-        let next = tokio::time::timeout(left.min(inbox.patience), stream.next()).await;
+        let remaining = deadline.saturating_duration_since(Instant::now());
+        ensure(remaining != Duration::ZERO, Problem::too_slow())?;
+        let next = tokio::time::timeout(remaining.min(inbox.patience), stream.next()).await;
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
             Some(Err(error)) => {
@@ -213,7 +213,7 @@ async fn write_file<E: Display>(
                     untaken.take(chunk.len());
                 }
                 size += chunk.len() as u64;
-                ensure(size <= most, Problem::too_large(most))?;
+                ensure(size <= max_bytes, Problem::too_large(max_bytes))?;
                 file.write_all(&chunk).await?;
             }
         }

@@ -34,9 +34,9 @@ pub(crate) fn set_limits(command: &mut Command, memory: u64, seconds: u64) {
     unsafe {
         command.pre_exec(move || {
             libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-            for (what, most) in [(libc::RLIMIT_AS, memory), (libc::RLIMIT_CPU, seconds), (libc::RLIMIT_CORE, 0)] {
-                let limit = libc::rlimit { rlim_cur: most, rlim_max: most };
-                libc::setrlimit(what, &raw const limit);
+            for (resource, limit) in [(libc::RLIMIT_AS, memory), (libc::RLIMIT_CPU, seconds), (libc::RLIMIT_CORE, 0)] {
+                let limit = libc::rlimit { rlim_cur: limit, rlim_max: limit };
+                libc::setrlimit(resource, &raw const limit);
             }
             Ok(())
         });
@@ -73,14 +73,14 @@ impl Child {
                 Ok(child) => child,
                 Err(error) => return drop(started_sender.send(Err(error))),
             };
-            let number = child.id().cast_signed();
-            *shared_group.lock().unwrap_or_else(PoisonError::into_inner) = Some(number);
+            let process_id = child.id().cast_signed();
+            *shared_group.lock().unwrap_or_else(PoisonError::into_inner) = Some(process_id);
             drop(started_sender.send(Ok(())));
-            wait_without_reaping(number);
-            let mut known = shared_group.lock().unwrap_or_else(PoisonError::into_inner);
-            *known = None;
+            wait_without_reaping(process_id);
+            let mut group_id = shared_group.lock().unwrap_or_else(PoisonError::into_inner);
+            *group_id = None;
             // SAFETY: the leader is not reaped yet, so the ID still belongs to the group.
-            unsafe { libc::kill(-number, libc::SIGKILL) };
+            unsafe { libc::kill(-process_id, libc::SIGKILL) };
             let end = match child.wait() {
                 Ok(status) => match (status.code(), status.signal()) {
                     (Some(code), _) => End::Code(code),
@@ -115,9 +115,9 @@ impl Child {
     }
 
     fn signal(&self, signal: i32, whole_group: bool) {
-        if let Some(number) = *self.group.lock().unwrap_or_else(PoisonError::into_inner) {
+        if let Some(process_id) = *self.group.lock().unwrap_or_else(PoisonError::into_inner) {
             // SAFETY: the leader is not reaped as long as the ID is known.
-            unsafe { libc::kill(if whole_group { -number } else { number }, signal) };
+            unsafe { libc::kill(if whole_group { -process_id } else { process_id }, signal) };
         }
     }
 }

@@ -127,8 +127,8 @@ impl JobSource for LocalSource {
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
         let is_held = match task {
             Some(task) => {
-                let most = max_duration(&task, &self.policy);
-                queue::renew(&mut transaction, &self.policy, lease, progress, most).await?
+                let limit = max_duration(&task, &self.policy);
+                queue::renew(&mut transaction, &self.policy, lease, progress, limit).await?
             }
             None => false,
         };

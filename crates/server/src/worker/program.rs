@@ -244,8 +244,8 @@ impl Grader for Program {
 }
 
 /// Waits until the grader ends. Returns how it ended, and whether it exceeded the time limit.
-async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
-    let (mut left, mut is_late) = (most, false);
+async fn wait_for_end(child: &Child, limit: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
+    let (mut remaining, mut is_late) = (limit, false);
     loop {
         tokio::select! {
             end = child.wait() => return Ok((end, is_late)),
@@ -254,7 +254,7 @@ async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -
                 child.wait().await;
                 return Err(GraderFault::Stopped);
             }
-            () = tokio::time::sleep(left) => match is_late {
+            () = tokio::time::sleep(remaining) => match is_late {
                 false => child.interrupt(),
                 true => {
                     child.kill();
@@ -262,7 +262,7 @@ async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -
                 }
             },
         }
-        (left, is_late) = (GRACE_PERIOD, true);
+        (remaining, is_late) = (GRACE_PERIOD, true);
     }
 }
 

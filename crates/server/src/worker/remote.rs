@@ -49,7 +49,7 @@ impl fmt::Debug for RemoteSource {
 }
 
 impl RemoteSource {
-    /// Creates a source for the worker called `name`, from the server's address and the worker's token.
+    /// Creates a source for the worker called `name`, from the server's URL and the worker's token.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
             // The status is checked below, so that the error contains the server's message.

@@ -230,7 +230,7 @@ async fn run_task<D: JobSource, G: Grader>(
         }
     };
     let work = folder.join(WORK_FOLDER);
-    std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
+    std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot create a folder: {error}")))?;
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {

@@ -34,7 +34,8 @@ pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     let store = folders.store(&arguments.storage)?;
     // The folder gets its final name when it is complete.
     let partial = PathBuf::from(format!("{}.partial-{}", output.display(), std::process::id()));
-    fs::DirBuilder::new().mode(0o700).create(&partial).with_context(|| format!("cannot make {}", partial.display()))?;
+    let error = || format!("cannot create the folder {}", partial.display());
+    fs::DirBuilder::new().mode(0o700).create(&partial).with_context(error)?;
     let manifest = write_backup(&partial, &database, &store, &address).await;
     database.close().await;
     let manifest = manifest.inspect_err(|_| drop(fs::remove_dir_all(&partial)))?;

@@ -5,7 +5,7 @@ use std::{path::Path, process::Stdio};
 use tokio::process::Command;
 use url::{Url, form_urlencoded};
 
-/// Splits an address into the address without its password, and the password.
+/// Splits a URL into the URL without its password, and the password.
 fn split_password(address: &str) -> Result<(Url, String)> {
     // The text may contain a password, so the error does not repeat it.
     let mut url = Url::parse(address).ok().context("the database's address is invalid")?;

@@ -80,7 +80,7 @@ pub struct NewToken {
 /// A link with which an account signs in once. It is valid for a week.
 #[derive(Serialize, ToSchema)]
 pub struct Link {
-    /// The link's address; `None` if the account existed already.
+    /// The link's URL; `None` if the account existed already.
     pub link: Option<String>,
 }
 

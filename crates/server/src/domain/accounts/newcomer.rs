@@ -21,8 +21,8 @@ impl Newcomer<'_> {
     /// Returns the person's account, if there is one.
     pub(in crate::domain) async fn find(&self, transaction: &mut Transaction) -> Result<Option<i64>, DbError> {
         let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
-        let known = transaction.row(statement, values![self.issuer, self.subject]).await?;
-        known.map(|row| row.int("account")).transpose()
+        let identity = transaction.row(statement, values![self.issuer, self.subject]).await?;
+        identity.map(|row| row.int("account")).transpose()
     }
 
     /// Assigns an account to the person. If the session began with a staff link, this is stored with the assignment.

@@ -33,7 +33,7 @@ impl App {
         self.provider.as_ref().ok_or_else(|| Problem::not_found("provider"))
     }
 
-    /// Returns the address to which the provider redirects people back.
+    /// Returns the URL to which the provider redirects people back.
     fn answer_address(&self) -> String {
         format!("{}/sign-in/provider/answer", self.public)
     }

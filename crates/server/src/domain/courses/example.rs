@@ -26,10 +26,10 @@ impl App {
     pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";
-        let known = transaction.one(statement, values![COURSE.0]).await?;
-        if known.int("examples")? == 0 {
+        let counts = transaction.one(statement, values![COURSE.0]).await?;
+        if counts.int("examples")? == 0 {
             ensure(
-                known.int("courses")? <= 0,
+                counts.int("courses")? <= 0,
                 Problem::conflict("this server has courses already", "start it without --example"),
             )?;
             let settings = Settings::default().validate(&self.suites)?;

@@ -45,7 +45,7 @@ pub enum LinkStep {
     Assignment(String),
     /// Send a form to the platform.
     Answer {
-        /// The platform's address to which the form is sent.
+        /// The platform's URL to which the form is sent.
         address: String,
         /// The platform's origins. The page may send forms to them, and they may redirect to each other.
         origins: String,
@@ -172,7 +172,7 @@ impl Person {
     }
 }
 
-/// Returns a name for addresses that is made from a title.
+/// Returns a name for URLs that is made from a title.
 pub fn propose_slug(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();

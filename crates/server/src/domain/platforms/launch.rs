@@ -42,7 +42,7 @@ pub struct LoginRequest {
 /// A redirect to the service at which the person signs in.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
-    /// The address to which the browser is redirected.
+    /// The URL to which the browser is redirected.
     pub address: String,
     /// The secret that the browser stores as a cookie, and must send when it returns.
     pub browser: String,
@@ -79,7 +79,7 @@ impl App {
         Err(Problem::conflict("learning platforms can be used only over HTTPS", remedy))
     }
 
-    /// Returns the address on this service to which platforms send people.
+    /// Returns the URL on this service to which platforms send people.
     pub fn launch_address(&self) -> String {
         format!("{}/lti/launch", self.public)
     }
@@ -105,7 +105,7 @@ impl Visitor {
         }
     }
 
-    /// Begins a sign-in, and returns the address to which the browser is redirected.
+    /// Begins a sign-in, and returns the URL to which the browser is redirected.
     ///
     /// # Errors
     ///

@@ -187,8 +187,8 @@ impl Admin {
     /// Fails if its name is invalid, or a worker has it already.
     pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
         let has_token = self.worker_tokens().await?.iter().any(|token| token.name == name);
-        let taken = Problem::conflict("this worker already has a token", "revoke it, or choose another name");
-        ensure(!has_token, taken)?;
+        let conflict = Problem::conflict("this worker already has a token", "revoke it, or choose another name");
+        ensure(!has_token, conflict)?;
         self.app.new_worker_token(name, self.account.id).await
     }
 

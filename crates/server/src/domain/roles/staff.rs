@@ -164,16 +164,16 @@ impl Staff {
     ) -> Result<String, Problem> {
         let Some(digest) = &settings.suite_archive else { return Ok(String::new()) };
         let statement = "SELECT name FROM suite WHERE course = ? AND digest = ?";
-        let known = transaction.row(statement, values![self.course, digest]).await?;
+        let suite = transaction.row(statement, values![self.course, digest]).await?;
         let is_stored = match digest.parse() {
-            Ok(digest) if known.is_some() => self.app.0.store.has(&digest).await?,
+            Ok(digest) if suite.is_some() => self.app.0.store.has(&digest).await?,
             _ => false,
         };
         ensure(
             is_stored,
             Problem::conflict("suite_archive: no suite of this digest was uploaded to this course", "upload it"),
         )?;
-        Ok(known.map_or(Ok(String::new()), |row| row.text("name"))?)
+        Ok(suite.map_or(Ok(String::new()), |row| row.text("name"))?)
     }
 
     /// Publishes the groups that the suite hides, or withholds them again. Platforms then receive the points that

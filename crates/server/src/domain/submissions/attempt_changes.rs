@@ -83,7 +83,7 @@ impl Member {
     ///
     /// Fails if the database does not answer.
     pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
-        let graded = attempts.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result)));
+        let graded = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();
         let results: Vec<i64> = graded.iter().filter(|(one, _)| !one.is_withheld).map(|(_, result)| *result).collect();
         let stored = self.stored_results(&results).await?;

@@ -124,20 +124,20 @@ impl Staff {
     /// # Errors
     /// Fails if the database does not answer.
     pub async fn whole_standings(&self, short: &[ShortStanding]) -> Result<Vec<Standing>, Problem> {
-        let ids: Vec<i64> = short.iter().filter_map(|one| Some(one.counts.as_ref()?.id)).collect();
+        let ids: Vec<i64> = short.iter().filter_map(|standing| Some(standing.counts.as_ref()?.id)).collect();
         let mut submissions = HashMap::new();
         let mut transaction = self.app.0.database.read().await?;
         for ids in ids.chunks(PAGE_SIZE) {
             let page = view::submissions_named(&mut transaction, ids).await?;
             submissions.extend(page.into_iter().map(|submission| (submission.id, submission)));
         }
-        let mut whole = |one: &ShortStanding| Standing {
-            login: one.login.clone(),
-            name: one.name.clone(),
-            submissions: one.submissions,
-            counts: one.counts.as_ref().and_then(|counts| submissions.remove(&counts.id)),
+        let mut complete = |standing: &ShortStanding| Standing {
+            login: standing.login.clone(),
+            name: standing.name.clone(),
+            submissions: standing.submissions,
+            counts: standing.counts.as_ref().and_then(|counts| submissions.remove(&counts.id)),
         };
-        Ok(short.iter().map(&mut whole).collect())
+        Ok(short.iter().map(&mut complete).collect())
     }
 }
 

@@ -177,7 +177,7 @@ pub(super) async fn export(
 /// Returns the standings of all students as a table, with the points of groups and the likely mistakes.
 async fn grades_csv(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     let standings = staff.standings(assignment).await?;
-    let grades = standings.iter().filter_map(|one| one.counts.as_ref()?.grade.as_ref());
+    let grades = standings.iter().filter_map(|standing| standing.counts.as_ref()?.grade.as_ref());
     let stored = staff.stored_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
     super::export_csv(&standings, &stored)
 }

@@ -70,15 +70,15 @@ pub(in crate::web) async fn receive(
 ) -> Result<SubmitResult, Problem> {
     let _transfer = member.transfer()?;
     let settings = member.assignment(assignment).await?.settings;
-    let most = settings.max_bytes;
+    let max_bytes = settings.max_bytes;
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
     // The key in a form is not known before the body is read.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
     let came_at = match member.check_announcement(assignment, announced, since).await {
         Ok(came_at) => came_at,
-        Err(problem) => return Err(upload::reject(&member.app, request, most, problem).await),
+        Err(problem) => return Err(upload::reject(&member.app, request, max_bytes, problem).await),
     };
-    let received = upload::receive(&member.app, request, most).await?;
+    let received = upload::receive(&member.app, request, max_bytes).await?;
     let excess = since.elapsed().saturating_sub(upload::allowed_time(std::fs::metadata(&received.file)?.len()));
     let came_at = came_at.saturating_add(millis(excess));
     let form = archive_check::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;

@@ -85,8 +85,8 @@ pub(super) async fn store(
 ) -> Result<Json<Artifact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
-    let most = remote.check_lease(&lease).await?;
-    let received = upload::receive(&remote.app, request, most).await?;
+    let max_bytes = remote.check_lease(&lease).await?;
+    let received = upload::receive(&remote.app, request, max_bytes).await?;
     let found = crate::store::digest_of_file(&received.file).await?;
     ensure(found.digest == digest, Problem::invalid("the bytes do not match the digest"))?;
     Ok(Json(remote.store(&lease, &received.file).await?))

@@ -17,7 +17,7 @@ use askama::Template;
 use axum::{http::Uri, response::Redirect};
 use serde::Deserialize;
 
-/// The subjects of the pages. Each has the end of its page's address, and its title.
+/// The subjects of the pages. Each has the end of its page's URL, and its title.
 const SECTIONS: [(&str, &str); 5] = [
     ("", "Courses"),
     ("/people", "People"),
@@ -35,7 +35,7 @@ struct AdminPage<'a> {
     courses: Vec<CourseSize>,
     accounts: Vec<ListedAccount>,
     filter: People,
-    /// The address of the next page of accounts; `None` on the last page.
+    /// The URL of the next page of accounts; `None` on the last page.
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,

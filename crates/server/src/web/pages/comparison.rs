@@ -45,7 +45,7 @@ fn scene_place(scene: &str) -> String {
 /// Returns the scenes on which two results have different verdicts.
 fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
-    let code = |of: &FailedScenes, scene: &String| of.get(scene).map_or("AC", String::as_str).to_owned();
+    let code = |failed: &FailedScenes, scene: &String| failed.get(scene).map_or("AC", String::as_str).to_owned();
     let mut kinds = DifferingScenes::new();
     for scene in names {
         let codes = [code(one, scene), code(other, scene)];
@@ -66,14 +66,14 @@ pub(super) async fn show_page(
     let number: Option<i64> = query.with.trim().parse().ok();
     let login = if number.is_some() { &first.login } else { query.with.trim() };
     let mut history = staff.student_history(&assignment.slug, login).await?.submissions.into_iter();
-    let other = history.find(|one| one.grade.is_some() && number.is_none_or(|number| one.number == number));
+    let other = history.find(|attempt| attempt.grade.is_some() && number.is_none_or(|number| attempt.number == number));
     let missing = || {
         let detail = format!("there is no graded submission of {:?}", query.with.trim());
         let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();
         Problem { detail, remedy, ..Problem::not_found("") }
     };
     let other = other.ok_or_else(missing)?;
-    let find_result = |of: &Submission| of.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
+    let find_result = |submission: &Submission| submission.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
     let results = [find_result(&first)?, find_result(&other)?];
     let stored = staff.stored_results(&results).await?;
     let [Some(result), Some(other_result)] = results.map(|number| stored.get(&number)) else { return Err(missing()) };
@@ -90,14 +90,16 @@ mod tests {
 
     #[test]
     fn scenes_that_both_judge_alike_are_left_out() {
-        let of = |scenes: &[(&str, &str)]| -> FailedScenes {
+        let list = |scenes: &[(&str, &str)]| -> FailedScenes {
             scenes.iter().map(|(scene, code)| ((*scene).to_owned(), (*code).to_owned())).collect()
         };
-        let (one, other) =
-            (of(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]), of(&[("b", "WA"), ("c", "WA"), ("d", "WA")]));
+        let (one, other) = (
+            list(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]),
+            list(&[("b", "WA"), ("c", "WA"), ("d", "WA")]),
+        );
         let kinds = find_differing(&one, &other);
-        let told: Vec<String> =
+        let descriptions: Vec<String> =
             kinds.iter().map(|(codes, scenes)| format!("{}: {}", codes.join(" "), scenes.join(" "))).collect();
-        assert_eq!(told, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);
+        assert_eq!(descriptions, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);
     }
 }

@@ -77,7 +77,7 @@ impl OwnWork {
         let closes_at = due.map(|due| policy.closes_at(due));
         let attempts = assignment.settings.attempts as usize;
         let points = |one: &Submission| one.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
-        let graded = submissions.iter().rev().filter_map(|one| Some((points(one)?, one)));
+        let graded = submissions.iter().rev().filter_map(|submission| Some((points(submission)?, submission)));
         let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
         Ok(Self {
             due,
@@ -106,7 +106,7 @@ struct MembersPage {
     students: usize,
     staff_count: usize,
     filter: People,
-    /// The address of the next page of members; `None` on the last page.
+    /// The URL of the next page of members; `None` on the last page.
     after: Option<String>,
     platforms: Vec<String>,
     /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
@@ -196,7 +196,7 @@ impl People {
         matches_search && (self.role.is_empty() || member.role == self.role) && member.login > self.after
     }
 
-    /// Returns the address of the next page, which begins after the login `last`; `None` on the last page.
+    /// Returns the URL of the next page, which begins after the login `last`; `None` on the last page.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
         Some(query.append_pair("q", &self.q).append_pair("role", &self.role).append_pair("after", last?).finish())

@@ -80,7 +80,7 @@ pub(super) struct GradesQuery {
 }
 
 impl GradesQuery {
-    /// Returns the students on this page, the number of students on all pages, and the addresses of the previous and
+    /// Returns the students on this page, the number of students on all pages, and the URLs of the previous and
     /// the next page.
     fn select_page(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let search = self.q.trim().to_lowercase();
@@ -97,9 +97,9 @@ impl GradesQuery {
             points.and_then(|points| points.parse::<f64>().ok()).unwrap_or(-1.0)
         };
         match self.sort.as_str() {
-            "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
-            "points" => standings.sort_by(|one, other| points(other).total_cmp(&points(one))),
-            "submissions" => standings.sort_by_key(|one| std::cmp::Reverse(one.submissions)),
+            "name" => standings.sort_by_cached_key(|standing| standing.name.to_lowercase()),
+            "points" => standings.sort_by(|standing, other| points(other).total_cmp(&points(standing))),
+            "submissions" => standings.sort_by_key(|standing| std::cmp::Reverse(standing.submissions)),
             // The students are already sorted by login.
             _ => {}
         }
@@ -141,7 +141,7 @@ pub(super) async fn show_class(
     let (standings, found, [before, after]) = look.select_page(&standings);
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
-        standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
+        standings.iter().filter_map(|standing| Some(standing.counts.as_ref()?.grade.as_ref()?.result)).collect();
     let stored = staff.stored_results(&results).await?;
     render(&GradesPage {
         frame: class_frame(&staff, &assignment),

@@ -2,7 +2,7 @@
 //! be dropped onto the page.
 
 /// Declares handlers that perform an action and then redirect to a page, one per row. A row has the name, the role, the
-/// parts of the address and the form; then the action; and last the next page.
+/// parts of the URL and the form; then the action; and last the next page.
 macro_rules! actions {
     ($($(#[doc = $doc:literal])*
         $name:ident($sender:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
@@ -173,13 +173,13 @@ pub(super) struct PageFrame {
     /// The login of the person who is signed in.
     login: Option<String>,
     is_admin: bool,
-    /// The pages above this one in the hierarchy, by address and title.
+    /// The pages above this one in the hierarchy, by URL and title.
     parents: Vec<(String, String)>,
-    /// The pages about the same subject, by address and title.
+    /// The pages about the same subject, by URL and title.
     tabs: Vec<(String, &'static str)>,
-    /// The address of the shown page among `tabs`.
+    /// The URL of the shown page among `tabs`.
     tab: String,
-    /// The address of the shown page, if the frame names the page.
+    /// The URL of the shown page, if the frame names the page.
     address: String,
 }
 
@@ -206,8 +206,8 @@ impl PageFrame {
         }
     }
 
-    /// Adds the pages about the same subject. `base` is the beginning of their addresses, and `pages` has the rest of
-    /// each address and the title.
+    /// Adds the pages about the same subject. `base` is the beginning of their URLs, and `pages` has the rest of
+    /// each URL and the title.
     fn with_pages(mut self, base: &str, pages: &[(&str, &'static str)]) -> Self {
         self.tabs = pages.iter().map(|(end, title)| (format!("{base}{end}"), *title)).collect();
         self
@@ -252,7 +252,7 @@ pub(super) async fn show_problems(State(app): State<App>, request: Request, next
     rejection_page(next.run(Request::from_parts(head, body)).await, parts, &app).await
 }
 
-/// Turns rejections of other addresses into pages if the request comes from a browser.
+/// Turns rejections of other URLs into pages if the request comes from a browser.
 pub(super) async fn show_other_problems(State(app): State<App>, request: Request, next: Next) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
@@ -262,17 +262,17 @@ pub(super) async fn show_other_problems(State(app): State<App>, request: Request
     show_problems(State(app), request, next).await
 }
 
-/// Returns the answer for addresses without a page.
+/// Returns the answer for URLs without a page.
 pub(super) async fn missing_page() -> Problem {
     Problem::not_found("page")
 }
 
-/// Returns the answer to a method that an address does not support.
+/// Returns the answer to a method that a URL does not support.
 pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
-/// Returns the frame for a rejected request. It is the frame of the assignment or course in the address, if the person
+/// Returns the frame for a rejected request. It is the frame of the assignment or course in the URL, if the person
 /// may see that.
 async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
     let person = Person::from_request_parts(head, app).await.ok()?;
@@ -294,7 +294,7 @@ async fn rejection_page(mut response: Response, mut head: Parts, app: &App) -> R
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
         return Redirect::to(&address).into_response();
     }
-    // Use the address in this header only if it is a page of this server.
+    // Use the URL in this header only if it is a page of this server.
     let from = head.headers.get(header::REFERER).and_then(|from| Url::parse(from.to_str().ok()?).ok());
     let back = from.map(|from| sign_in::local_path(&from[url::Position::BeforePath..]).to_owned());
     // If the server fails, the error page reads nothing from the database.

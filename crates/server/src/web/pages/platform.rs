@@ -149,13 +149,13 @@ pub(super) async fn accept(visitor: Visitor, Fields(answer): Fields<sign_in::Ans
     Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.path))
 }
 
-/// Returns the service's public keys. Platforms read them at this address.
+/// Returns the service's public keys. Platforms read them at this URL.
 pub(super) async fn send_keys(State(app): State<App>) -> Result<Response, Problem> {
     let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
-/// Returns the configuration for Canvas. An administrator enters the address of this answer there.
+/// Returns the configuration for Canvas. An administrator enters the URL of this answer there.
 pub(super) async fn send_configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();
@@ -243,8 +243,8 @@ pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) 
 
 actions! {
     choose_course(person: Person, { secret }, choice: CourseChoice): {
-        let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
-        person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim()))
+        let existing_slug = choice.known.as_deref().filter(|slug| !slug.is_empty());
+        person.choose_course(&secret, existing_slug, (choice.slug.trim(), choice.title.trim()))
     } => "/lti/choose/{secret}";
     set_platform(admin: Admin, form: NewPlatform):
         async { admin.set_platform(form.name.trim(), &form.settings()?).await } => "/admin/platforms";

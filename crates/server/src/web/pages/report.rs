@@ -42,10 +42,10 @@ mod tests {
                  <footer><p>Written by fosssim-oracle {version}. In metres.</p></footer>\n<script>1</script>"
             )
         };
-        let own = env!("CARGO_PKG_VERSION");
-        assert_eq!(strip_head(&report("<p>Likely</p>\n", own)), Some("<p>Likely</p>\n"));
+        let this_version = env!("CARGO_PKG_VERSION");
+        assert_eq!(strip_head(&report("<p>Likely</p>\n", this_version)), Some("<p>Likely</p>\n"));
         assert_eq!(strip_head(&report("<p>Likely</p>\n", "0.0.1")), None);
-        assert_eq!(strip_head(&report("<FORM action=\"/account\">", own)), None);
+        assert_eq!(strip_head(&report("<FORM action=\"/account\">", this_version)), None);
         assert_eq!(strip_head("everything"), None);
     }
 }

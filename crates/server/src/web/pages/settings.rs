@@ -169,7 +169,7 @@ pub(super) async fn save(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
-    // This form changes only existing assignments, so that a mistyped address does not create one.
+    // This form changes only existing assignments, so that a mistyped URL does not create one.
     let assignment = staff.assignment(&assignment).await?;
     let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
     // The form of an earlier server version sends no revision, and is accepted without a check.

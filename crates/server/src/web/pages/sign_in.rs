@@ -22,7 +22,7 @@ use url::form_urlencoded::byte_serialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
-    /// The provider's name, and the address at which a sign-in at the provider begins.
+    /// The provider's name, and the URL at which a sign-in at the provider begins.
     provider: Option<(String, String)>,
     /// The reason why the provider cannot be used at present.
     fault: String,
@@ -106,8 +106,8 @@ pub(super) fn with_cookie(cookie: &str, path: &str) -> Response {
 /// Returns the page that lists the ways to sign in.
 pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page {
     let query = byte_serialize(to.as_bytes()).collect::<String>();
-    let known = visitor.app.provider.as_ref();
-    let provider = known.map(|known| (known.label.clone(), format!("/sign-in/provider?to={query}")));
+    let provider = visitor.app.provider.as_ref();
+    let provider = provider.map(|provider| (provider.label.clone(), format!("/sign-in/provider?to={query}")));
     render(&SignIn { frame: PageFrame::default(), provider, fault, to })
 }
 

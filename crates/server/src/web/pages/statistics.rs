@@ -61,9 +61,9 @@ pub(super) struct Statistics {
 
 impl Statistics {
     pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
-        let count = |part: &str| standings.iter().filter(|one| is_in_section(one, part)).count();
-        let ran = standings.iter().filter(|one| !is_in_section(one, "never-ran"));
-        let mut shares: Vec<f64> = ran.filter_map(|one| points_share(one.counts.as_ref()?)).collect();
+        let count = |part: &str| standings.iter().filter(|standing| is_in_section(standing, part)).count();
+        let ran = standings.iter().filter(|standing| !is_in_section(standing, "never-ran"));
+        let mut shares: Vec<f64> = ran.filter_map(|standing| points_share(standing.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
         let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
@@ -90,8 +90,8 @@ impl Statistics {
 /// Returns the points of a submission in percent of the maximum.
 fn points_share(counts: &CountedSubmission) -> Option<f64> {
     let number = |text: &Option<String>| text.as_ref()?.parse::<f64>().ok();
-    let (points, most) = (number(&counts.points)?, number(&counts.max_points)?);
-    (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
+    let (points, max_points) = (number(&counts.points)?, number(&counts.max_points)?);
+    (max_points > 0.0).then(|| (100.0 * points / max_points).clamp(0.0, 100.0))
 }
 
 /// Groups students by the value that `key` returns for their submissions. The largest groups are first.

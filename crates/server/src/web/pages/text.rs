@@ -19,10 +19,10 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::format_minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Formats points and the maximum, with at most two decimals, as reports do. Without points, the text is a dash.
-pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
-    match (points, most) {
-        (Some(points), Some(most)) => format!("{} of {}", round_points(points), round_points(most)),
+/// Formats points and the maximum, with at max_points two decimals, as reports do. Without points, the text is a dash.
+pub(super) fn points(points: &Option<String>, max_points: &Option<String>) -> String {
+    match (points, max_points) {
+        (Some(points), Some(max_points)) => format!("{} of {}", round_points(points), round_points(max_points)),
         (Some(points), None) => round_points(points),
         _ => "\u{2013}".to_owned(),
     }
@@ -42,9 +42,9 @@ pub(super) fn shorten(text: &str) -> String {
 }
 
 /// Formats a verdict's code, the points and, if it is known, the maximum.
-pub(super) fn result(code: &str, reached: &Option<String>, most: &Option<String>) -> String {
+pub(super) fn result(code: &str, reached: &Option<String>, max_points: &Option<String>) -> String {
     let verdict = verdict(code);
-    if reached.is_none() { verdict.to_owned() } else { format!("{verdict}, {} points", points(reached, most)) }
+    if reached.is_none() { verdict.to_owned() } else { format!("{verdict}, {} points", points(reached, max_points)) }
 }
 
 /// Describes the state of a regrade.
@@ -59,7 +59,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
 /// Describes a score that a learning platform receives.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{} / {}", round_points(points), round_points(most)),
+        (Some(points), Some(max_points)) => format!("{} / {}", round_points(points), round_points(max_points)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
         _ => "staff must check it".to_owned(),
     }
@@ -122,7 +122,7 @@ pub(super) fn state(state: &str) -> &'static str {
 mod tests {
     #[test]
     fn points_have_two_digits_at_most() {
-        let points = |points: &str, most: &str| super::points(&Some(points.to_owned()), &Some(most.to_owned()));
+        let points = |points: &str, max: &str| super::points(&Some(points.to_owned()), &Some(max.to_owned()));
         assert_eq!(points("68.08974358974359", "100.0"), "68.09 of 100");
         assert_eq!(points("0", "7.5"), "0 of 7.5");
         assert_eq!(super::points(&None, &None), "\u{2013}");
