@@ -2,7 +2,7 @@
 use crate::domain::view::Account;
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
-    problem::Problem,
+    problem::{Problem, ensure},
     secret::{random_hex, to_hex},
     values,
 };
@@ -126,7 +126,9 @@ pub(in crate::domain) async fn account_of_token(
     let row = transaction.row(statement, values![digest(token)]).await?;
     match row {
         Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
-        None => Err(Problem::unknown_secret("token", "create a new one on the page Account")),
+        None => {
+            Err(Problem::unknown_secret("token", "sign in with a link from the course's staff, and create a new one"))
+        }
     }
 }
 
@@ -318,22 +320,15 @@ pub(in crate::domain) fn is_control(c: char) -> bool {
 /// Checks a name that a person chose, because pages, logs and tables show it.
 pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
-    if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
-        return Err(Problem::invalid(format!(
-            "{what} must be 1 to 200 characters long, without invisible characters and spaces at its ends"
-        )));
-    }
-    Ok(())
+    let is_fit = (1..=200).contains(&length) && !text.chars().any(is_control) && text.trim() == text;
+    let rule = "must be 1 to 200 characters long, without invisible characters and spaces at its ends";
+    ensure(is_fit, Problem::invalid(format!("{what} {rule}")))
 }
 
 /// Checks a name that becomes a part of URLs.
 pub(in crate::domain) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
-    if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {
-        return Err(Problem::invalid(format!(
-            "{what} must be 1 to 60 small letters, digits, dots, dashes and underscores, and begin with a letter or \
-             digit"
-        )));
-    }
-    Ok(())
+    let is_fit = (1..=60).contains(&text.len()) && text.chars().all(plain) && !text.starts_with(['-', '.', '_']);
+    let rule = "must be 1 to 60 small letters, digits, dots, dashes and underscores, and begin with a letter or digit";
+    ensure(is_fit, Problem::invalid(format!("{what} {rule}")))
 }

@@ -103,10 +103,9 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
         let checked = check_member(&login, &name, &role);
         let error = match checked {
-            Err(_) if login.is_empty() => Some("this line has no login".to_owned()),
-            Err(_) if name.is_empty() => Some("this line has no name".to_owned()),
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("the login appears twice in the table".to_owned()),
+            Ok(()) if !email.is_empty() && !email.contains('@') => Some("the e-mail address has no @".to_owned()),
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
@@ -173,6 +172,9 @@ mod tests {
         let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
         let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
         assert_eq!(errors, [false, true, true, true, true]);
+        let both = lines("Eve,e v e,,boss\n")[0].error.clone().expect("errors");
+        assert!(both.contains("a login") && both.contains("a role"), "{both}");
+        assert!(lines("who,what,post\nAda,ada,ada@example.org\n")[0].error.is_some(), "an unknown heading");
         assert!(read("").is_err() && read(r#"[{"name": "Ada", "login": "ada"}]"#).is_err());
     }
 }

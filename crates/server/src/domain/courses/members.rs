@@ -29,11 +29,13 @@ pub(in crate::domain) const PEOPLE_PER_PAGE: i64 = 200;
 
 from_row! { MemberInfo { login, name, role, is_ours } }
 
-/// Checks the login, the name and the role of a member.
+/// Checks the login, the name and the role of a member, and describes all errors.
 pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
-    identity::check_slug("a login", login)?;
-    identity::check_title("a name", name)?;
-    if matches!(role, "student" | "staff") { Ok(()) } else { Err(Problem::invalid("a role must be student or staff")) }
+    let is_role = matches!(role, "student" | "staff");
+    let role = ensure(is_role, Problem::invalid("a role must be student or staff"));
+    let checks = [identity::check_slug("a login", login), identity::check_title("a name", name), role];
+    let errors: Vec<String> = checks.into_iter().filter_map(|check| Some(check.err()?.detail)).collect();
+    ensure(errors.is_empty(), Problem::invalid(errors.join("; ")))
 }
 
 impl Staff {

@@ -173,7 +173,8 @@ pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
 async fn render_preview(staff: &Staff, table: String, seen_event: Option<i64>, is_confirmed: bool) -> Page {
     let before = staff.members().await?;
     let lines = staff.import(&table, !is_confirmed, seen_event).await?;
-    let lines = lines.into_iter().map(|line| import_row(&staff.title, &before, line)).collect();
+    let mut lines: Vec<_> = lines.into_iter().map(|line| import_row(&staff.title, &before, line)).collect();
+    lines.sort_by_key(|line| line.member.error.is_none());
     render_import(staff, table, lines, is_confirmed).await
 }
 
