@@ -10,6 +10,7 @@ use crate::{
     health,
     lti::score,
     problem::{Problem, ensure},
+    task::round_points,
     values,
 };
 
@@ -95,13 +96,6 @@ impl Staff {
         check_text("a comment", comment, 0)?;
         let bare = Problem::conflict("different points need a reason", "write it in the comment");
         ensure(points.is_none() || !comment.is_empty(), bare)?;
-        let is_number = |text: &str| {
-            text.len() <= 30
-                && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
-                && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
-        };
-        let number = "points must be a number between 0 and a million, such as 7.5";
-        ensure(points.is_none_or(is_number), Problem::invalid(number))?;
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let submission = self.find_submission(&mut transaction, id).await?;
@@ -113,8 +107,17 @@ impl Staff {
         }
         let ungraded = Problem::conflict("the submission is not graded yet", "wait for its grade");
         ensure(points.is_none() || submission.grade.is_some(), ungraded)?;
+        // Without a maximum, the grader failed. Points that were given before stay allowed.
+        let most = submission.grade.and_then(|grade| grade.outcome.max_points).unwrap_or_else(|| "1000000".to_owned());
+        let is_number = |text: &str| {
+            text.len() <= 30
+                && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
+                && text.parse().is_ok_and(|points| (0.0..=most.parse().unwrap_or(1e6)).contains(&points))
+        };
+        let number = format!("points must be a number between 0 and {}, such as 7.5", round_points(&most));
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
+            ensure(points.is_none_or(is_number), Problem::invalid(number))?;
             let what = if points.is_some() { "points by hand" } else { "the grader's points again" };
             let reason = if comment.is_empty() { what.to_owned() } else { format!("{what}: {comment}") };
             let statement =

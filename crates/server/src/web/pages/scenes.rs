@@ -11,6 +11,7 @@ pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, StoredRe
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
         let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());
+        let grade = grade.filter(|grade| grade.outcome.has_run());
         for scene in grade.and_then(|grade| kept.get(&grade.result)).into_iter().flat_map(|kept| kept.failed.keys()) {
             logins.entry(scene).or_default().push(standing.login.clone());
         }

@@ -87,11 +87,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains("The scene is &#60;b&#62;odd") && class.contains("Is anybody there?"), "{class}");
     assert!(class.contains("<b>40 %</b>mean"), "{class}");
-    teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"points": 10}"#).expect(409);
-    for bad in [r#"{"points": -1, "comment": "x"}"#, r#"{"points": 1e300, "comment": "x"}"#] {
-        teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, bad.as_bytes()).expect(400);
-    }
-    ada.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"points": 100, "comment": "x"}"#).expect(403);
+    check_bad_marks(&teacher, &ada, ids[1]);
     teacher.post_form(&format!("/c/physics/s/{}/mark", ids[1]), "points=68%2C5&comment=You+are+right").expect(303);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "68.5");
     let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
@@ -108,9 +104,12 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
     check_parts(&server, &admin, &teacher);
-    // The wrong scenes of students.
+    // The wrong scenes of students whose programs ran.
+    let dora = server.member(&admin, "physics", "dora", "student");
+    let unusable = dora.submit("physics", &program("US", 0));
+    dora.wait_for_grade("physics", unusable);
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    let hard = "students\">2</td><td class=\"words\" data-label=\"who\"><a href=\"/c/physics/a/m1/students/ada";
+    let hard = "students\">2</td><td class=\"words\" data-label=\"logins\"><a href=\"/c/physics/a/m1/students/ada";
     assert!(class.contains(hard), "{class}");
     // All attempts are on one page, with the changes of each.
     let mended = eve.submit("physics", &program("AC", 90));
@@ -195,6 +194,21 @@ fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     assert!(page.contains("fix what the report names first") && !page.contains("o longer right"), "{page}");
 }
 
+/// Checks that points need a reason, lie between zero and the maximum, and come from staff.
+fn check_bad_marks(teacher: &Client, ada: &Client, id: i64) {
+    let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
+    teacher.send("PUT", &mark, JSON, br#"{"points": 10}"#).expect(409);
+    for points in ["-1", "1e300", "100.5", "5000"] {
+        let wish = format!(r#"{{"points": {points}, "comment": "x"}}"#);
+        let refused = teacher.send("PUT", &mark, JSON, wish.as_bytes()).expect(400).text();
+        assert!(refused.contains("points must be a number between 0 and 100"), "{refused}");
+    }
+    let form = "points=101&comment=x";
+    let refused = teacher.post_form(&format!("/c/physics/s/{id}/mark"), form).expect(400).text();
+    assert!(refused.contains("between 0 and 100"), "{refused}");
+    ada.send("PUT", &mark, JSON, br#"{"points": 100, "comment": "x"}"#).expect(403);
+}
+
 /// Checks that a submission is compared with one of another student by login, and with the same student's by number.
 fn check_beside(teacher: &Client, [one, mended]: [i64; 2]) {
     let page = teacher.get(&format!("/c/physics/s/{one}/beside?with=ada")).expect(200).text();
@@ -213,9 +227,12 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     let ada = server.member(&admin, "physics", "ada", "student");
     let before = SystemTime::now() - Duration::from_secs(36 * 3600);
     let due = before.duration_since(SystemTime::UNIX_EPOCH).expect("a time").as_millis();
+    let wish_of = |days: u32, percent: u32| {
+        let settings = format!(r#"{{"due_at": {due}, "late_days": {days}, "late_percent": {percent}}}"#);
+        format!(r#"{{"title": "M", "visible": true, "settings": {settings}}}"#)
+    };
     let set = |days: u32| {
-        let settings = format!(r#"{{"due_at": {due}, "late_days": {days}, "late_percent": 10}}"#);
-        let wish = format!(r#"{{"title": "M", "visible": true, "settings": {settings}}}"#);
+        let wish = wish_of(days, 10);
         teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes())
     };
     set(366).expect(400);
@@ -246,6 +263,12 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2001-01-01T00:00Z"}"#).expect(204);
     teacher.send("PUT", &mark, JSON, b"{}").expect(200);
     assert_eq!(seen()["grade"]["points"], "76");
+    // Late days without a deduction.
+    let free = wish_of(3, 0);
+    teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, free.as_bytes()).expect(200);
+    let place = ada.get("/c/physics/a/m1").expect(200).text();
+    assert!(place.contains(", without a deduction.") && !place.contains("0 % of the points"), "{place}");
+    assert!(!ada.get(&format!("/c/physics/s/{id}")).expect(200).text().contains("deducts"));
     // The late days are over.
     set(1).expect(200);
     let upload = "/api/v1/courses/physics/assignments/m1/submissions?name=FOSSSim";

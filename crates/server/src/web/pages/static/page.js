@@ -25,6 +25,12 @@ if (state && state.dataset.follow) {
   update();
   setInterval(update, 1000);
 }
+// Going back keeps what was typed into a form.
+document.querySelector("[data-back]")?.addEventListener("click", (event) => {
+  if (history.length < 2) return;
+  event.preventDefault();
+  history.back();
+});
 // Send a form for which a person need not decide anything.
 document.querySelector("form[data-send]")?.submit();
 // Show elements that need a script.
