@@ -29,7 +29,7 @@ impl Services for CliServices {
             // The original aborts in this case.
             None => {
                 return Err(format!(
-                    "Error opening {FOLDER}/frame00001.png: there is no folder {FOLDER}; make it first\n"
+                    "Error opening {FOLDER}/frame00001.png: there is no folder {FOLDER}; create it first\n"
                 ));
             }
             found => found,

@@ -83,7 +83,7 @@ impl Output {
         }
         let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         if folder.symlink_metadata().is_err_and(|error| error.kind() == io::ErrorKind::NotFound) {
-            bail!("there is no folder {}; make it first", folder.display());
+            bail!("there is no folder {}; create it first", folder.display());
         }
         let name = target.file_name().context("this is the name of a folder; name a file in it")?;
         let begin = || files::Folder::open_to_write(folder)?.replacement(name, mode);
@@ -222,7 +222,7 @@ pub(super) fn copy_below(place: &FilePlace, from: &mut impl io::Read) -> io::Res
     write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
-/// Writes a whole file at once. An existing file is replaced.
+/// Writes a whole file. An existing file is replaced when the new one is complete.
 fn write_whole(
     begin: impl FnOnce() -> io::Result<Replacement>,
     fill: impl FnOnce(&mut Replacement) -> io::Result<()>,

@@ -176,7 +176,7 @@ fn invalid_requests_are_reported() {
         ("pe:3,1+4,1:5,9+2,6:5,3+5,8", "the radii are missing"),
         ("pe:3,1+4,1:5,9+2,6 --radii 1,1", "pe takes 3 points"),
         ("pp:1e200,0+1,0:0,0 --radii 1,1", "pp"),
-        ("--scene scene.xml --step 4 --pair pe:2,0", "has 3 steps, counted from 1; there is no step 4"),
+        ("--scene scene.xml --step 4 --pair pe:2,0", "are 1 to 3"),
         ("--scene scene.xml --step 0 --pair pe:2,0", "there is no step 0"),
         ("--scene scene.xml --step 1 --pair pe:0,0", "particle 0 is an end of edge 0"),
         ("--scene scene.xml --step 1 --pair pe:2,1", "there is no edge 1; the scene's last edge is 0"),

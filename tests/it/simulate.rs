@@ -60,7 +60,7 @@ fn outputs_that_cannot_be_written_are_rejected() {
         ("scene.xml", "this is also an input"),
         ("folder", "this is a folder"),
         ("new/", "this is the name of a folder"),
-        ("nowhere/trace.bin", "there is no folder nowhere; make it first"),
+        ("nowhere/trace.bin", "there is no folder nowhere; create it first"),
         ("dangling", "a symbolic link to a file that does not exist"),
     ] {
         let run = workspace.run(["simulate", "scene.xml", "--output", output]);

@@ -10,7 +10,7 @@ use fosssim_render::{
     film::{Gif, Rate, write_png},
     svg,
 };
-use fosssim_report::describe::no_result;
+use fosssim_report::describe::describe_step_error;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
@@ -114,7 +114,7 @@ impl Film {
                 break;
             }
             if let Err(error) = simulation.step(&mut ()) {
-                stopped = Some(no_result(&error));
+                stopped = Some(describe_step_error(&error));
                 break;
             }
             extent.add(&scene, &simulation.state().positions);
@@ -206,7 +206,7 @@ impl Film {
         let mut recorder = Recorder::start(buffer, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.step_count() {
             if let Err(error) = simulation.step(&mut recorder) {
-                return Err(format!("the trace cannot be written: {}", no_result(&error)));
+                return Err(format!("the trace cannot be written: {}", describe_step_error(&error)));
             }
             if recorder.has_failed() {
                 break;

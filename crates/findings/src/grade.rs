@@ -44,7 +44,7 @@ pub struct CourseNote {
 
 impl CourseNote {
     /// Formats the note as one line. `text` and `link` format its text and its URL.
-    pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
+    pub fn format_line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
         let parts: Vec<String> = [words, self.link.as_deref().map(link), points].into_iter().flatten().collect();
@@ -55,7 +55,7 @@ impl CourseNote {
 /// Formats the note as one line, with the URL as it is.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.line(str::to_owned, str::to_owned))
+        formatter.write_str(&self.format_line(str::to_owned, str::to_owned))
     }
 }
 

@@ -120,7 +120,7 @@ pub struct Study {
     pub curves: Vec<Curve>,
     /// The reference's decision.
     pub answer: Answer,
-    /// Whether the pair certainly collides, or certainly does not, in every correct program. `None` means that
+    /// Whether the pair provably collides, or provably does not, in every correct program. `None` means that
     /// round-off may change the decision.
     pub certain_decision: Option<bool>,
     /// The right approach polynomial, if it differs from the course's.

@@ -427,7 +427,7 @@ fn sum_of_moduli(coefficients: &[f64]) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum + c.abs())
 }
 
-/// Returns whether two lists are identical, and small enough that the original's comparison certainly accepts them.
+/// Returns whether two lists are identical, and small enough that the original's comparison provably accepts them.
 #[inline]
 fn are_equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
     if own.len() != actual.len() {

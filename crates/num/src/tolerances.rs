@@ -50,7 +50,7 @@ pub const PARABOLA_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 pub const PARABOLA_COMPLEX_FACTOR: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 
 /// Certificate: the minimum product of complex zeros (fraction of the step, squared) whose imaginary parts are
-/// certainly above [`MIN_IMAGINARY_PART`]; with [`PARABOLA_COMPLEX_FACTOR`] they exceed 2^-10 times the square root of
+/// provably above [`MIN_IMAGINARY_PART`]; with [`PARABOLA_COMPLEX_FACTOR`] they exceed 2^-10 times the square root of
 /// this.
 pub const PARABOLA_MIN_ZERO_PRODUCT: f64 = 1.0 / (1_u64 << 30) as f64;
 

@@ -8,6 +8,6 @@ pub fn pair_key(pair: Pair) -> String {
 }
 
 /// Returns a sentence about a step whose computation has no result.
-pub fn no_result(error: &StepError) -> String {
+pub fn describe_step_error(error: &StepError) -> String {
     format!("step {} has no result, because {}", error.step(), MissingResult(*error))
 }

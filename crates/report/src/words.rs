@@ -3,7 +3,7 @@ pub mod explanation;
 
 mod located;
 
-use crate::{describe::no_result, number::format_count, step_share};
+use crate::{describe::describe_step_error, number::format_count, step_share};
 pub use located::describe_located;
 
 use fosssim_findings::{
@@ -158,7 +158,7 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         }
         WrongTrace::Damaged => "the trace is damaged".to_owned(),
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
-        WrongTrace::NoResult(error) => no_result(error),
+        WrongTrace::NoResult(error) => describe_step_error(error),
         WrongTrace::Borderline => {
             "most of the trace's decisions differ from the reference's, although only round-off could flip them"
                 .to_owned()

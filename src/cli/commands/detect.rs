@@ -11,7 +11,7 @@ use crate::{
     judge::{overlap::OverlapCheck, study::Study},
     render::{detection, plot::PlotTarget},
     report::{
-        describe::no_result,
+        describe::describe_step_error,
         detect::{CallPlace, DetectReport, Overlap},
         style::Style,
     },
@@ -97,8 +97,9 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     };
     if matches!(scene.scene.collision, Collision::Simple { .. }) {
         let found = OverlapCheck::for_pair(&scene.scene, step, &before, pair);
-        let study =
-            found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("detection never tests this pair")?;
+        let study = found
+            .map_err(|error| anyhow::Error::msg(describe_step_error(&error)))?
+            .context("detection never tests this pair")?;
         let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
         let logged = traced.as_ref().map(|traced| traced.end.impulses.iter().any(|logged| logged.pair() == Some(pair)));
         return print(arguments, &Overlap { study: &study, scene, trace, step, pair, logged }, &inputs);
@@ -109,7 +110,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let passes = inspected.calls.len();
     let call = inspected.calls.get(arguments.pass as usize - 1);
     match (call, failed) {
-        (None, Some(error)) => bail!(no_result(&error)),
+        (None, Some(error)) => bail!(describe_step_error(&error)),
         (None, None) if passes > 0 => {
             let plural = if passes == 1 { "pass" } else { "passes" };
             bail!("step {step} has {passes} detection {plural}; there is no pass {}", arguments.pass)
@@ -133,7 +134,7 @@ fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
     let mut simulation = Simulation::new(&scene.scene, RootSearch::OnDemand);
     for _ in 1..step {
         if let Err(error) = simulation.step(&mut ()) {
-            bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
+            bail!("the scene {} can't be simulated: {}", scene.name, describe_step_error(&error));
         }
     }
     Ok(simulation.state().clone())

@@ -119,7 +119,8 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
     Ok(exit::NOT_ACCEPTED)
 }
 
-/// Writes all files, each at once. Unchanged recordings are not written. Recordings that have no scene are removed.
+/// Writes all files, each completely or not at all. Unchanged recordings are not written. Recordings that have no scene
+/// are removed.
 fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {

@@ -5,7 +5,7 @@ use crate::{
         console, input,
         output::Output,
     },
-    report::{describe::no_result, simulate::SimulationSummary, style::Style},
+    report::{describe::describe_step_error, simulate::SimulationSummary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{EventCounts, Layout, Recorder},
 };
@@ -27,7 +27,7 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     let mut bar = console::Bar::new(steps);
     for step in 1..=steps {
         if let Err(error) = simulation.step(&mut (&mut recorder, &mut counts)) {
-            bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
+            bail!("the scene {} can't be simulated: {}", scene.name, describe_step_error(&error));
         }
         if recorder.has_failed() {
             break;

@@ -46,7 +46,7 @@ impl ExplanationTopic {
 /// The facts that are known about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PolynomialEvidence {
-    /// A guess, which reproduces all or some of the polynomials.
+    /// A guess that reproduces all or some of the polynomials.
     Guess(Guess),
     /// The program does not pass the polynomials to the root finder.
     Missing,

@@ -55,7 +55,7 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
 ///
 /// The factor is that of the sums of absolute values. Bounds are at least as large as the values, so a deviation below
 /// [`FAIR_NORM_UNITS`] of the sum of moduli is right. Nearly all right coefficients deviate much less, and are called
-/// clearly right.
+/// right by a wide margin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' absolute values.
@@ -123,8 +123,8 @@ impl Similarity {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged_sum
     }
 
-    /// Returns whether the coefficients are clearly right. If both lists have lost coefficients, the lost ones are
-    /// small only with factors near 1.
+    /// Returns whether the coefficients are right by a wide margin. If both lists have lost coefficients, the lost ones
+    /// are small only with factors near 1.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
@@ -152,7 +152,7 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     is_right.then(|| similarity.as_match())
 }
 
-/// Returns whether a logged polynomial is certainly wrong with every factor, without a search for the best factor.
+/// Returns whether a logged polynomial is provably wrong with every factor, without a search for the best factor.
 /// `false` means unknown.
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it

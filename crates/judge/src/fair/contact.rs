@@ -258,7 +258,7 @@ pub(super) fn logged_decision(logged: LoggedImpulse) -> Option<Decision> {
     is_usable.then_some(Decision::Hit { time, normal })
 }
 
-/// Returns whether the root finder certainly ends with `coefficients`.
+/// Returns whether the root finder provably ends with `coefficients`.
 #[inline]
 pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
     coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
@@ -269,7 +269,7 @@ fn is_ordinary(c: f64) -> bool {
     (c == 0.0) | (c.abs() >= SEARCH_MIN_COEFFICIENT) & (c.abs() <= SEARCH_MAX_COEFFICIENT)
 }
 
-/// Returns the time of impact of `polynomials`. The time is infinite if there is certainly no impact, and `None` if the
+/// Returns the time of impact of `polynomials`. The time is infinite if there is provably no impact, and `None` if the
 /// root finder does not end.
 pub(super) fn find_time(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {

@@ -21,7 +21,7 @@ pub(crate) struct Context<'a> {
     pub records_per_step: u32,
     /// The range of states that need no comparison with the reference's own run.
     pub ordinary_range: OrdinaryRange,
-    /// Whether bounds are computed for every polynomial, including the clearly right ones.
+    /// Whether bounds are computed for every polynomial, including those that are right by a wide margin.
     pub computes_all_bounds: bool,
 }
 

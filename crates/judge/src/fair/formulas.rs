@@ -29,7 +29,7 @@ pub struct BoundedPointMotion {
 
 impl BoundedPointMotion {
     /// Returns the motion between two points. The coordinates may deviate by rounding errors of `size`, because a
-    /// program may use rotated or shifted axes. A point that is certainly at rest does not deviate.
+    /// program may use rotated or shifted axes. A point that is provably at rest does not deviate.
     fn from_positions([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = with_component_errors(start, size);
         let shift = if rests { BoundedVector::default() } else { with_component_errors(end, size) - start_place };
@@ -138,7 +138,7 @@ impl BoundedPairMotion {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
             if way.shift.x.bound == 0.0 && way.shift.y.bound == 0.0 {
-                // The object is certainly at rest, independent of other objects.
+                // The object is provably at rest, independent of other objects.
                 return;
             }
             // The unit is the running error bound; the tolerance is twice FAIR_UNITS of it.

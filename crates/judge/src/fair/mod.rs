@@ -23,7 +23,7 @@
 //!    record.
 //! 6. A step from or to a state without a result is never right.
 //!
-//! A step with records identical to the reference's needs none of this. Polynomials that are clearly right
+//! A step with records identical to the reference's needs none of this. Polynomials that are right by a wide margin
 //! (`follower::quick_matches`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS

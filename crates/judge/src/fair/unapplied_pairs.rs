@@ -99,7 +99,7 @@ pub(super) fn explain(
 struct NearPairs {
     /// The pairs whose particles all have wrong velocities.
     candidates: Vec<NearPair>,
-    /// The pairs whose force was certainly applied once, because a particle has a right velocity and its forces do not
+    /// The pairs whose force was provably applied once, because a particle has a right velocity and its forces do not
     /// cancel out.
     right_pairs: Vec<Pair>,
     /// The result of [`contest_layer`].

@@ -14,8 +14,8 @@ use super::{
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An explanation of a trace, and the statements that would explain it as well. Each statement has a flag, which is
-/// true if it explains the whole trace.
+/// An explanation of a trace, and the statements that would explain it as well. The flag of a statement is true if it
+/// explains the whole trace.
 #[derive(Clone)]
 pub(super) struct Symptom {
     pub(super) explanation: Explanation,

@@ -9,7 +9,7 @@ use super::{
     separated_zeros::are_zeros_separated,
 };
 
-/// Returns whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
+/// Returns whether a polynomial of degree three to five is provably not positive in `[0, 1]`. NaN gives `false`.
 #[inline]
 pub(super) fn is_never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {

@@ -12,7 +12,7 @@ use super::{
     Level,
 };
 
-/// Returns whether a polynomial of degree at most two (as solved, small leading coefficients dropped) is certainly not
+/// Returns whether a polynomial of degree at most two (as solved, small leading coefficients dropped) is provably not
 /// positive within the step. NaN and infinities never give a wrong `Some`.
 #[inline]
 pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {

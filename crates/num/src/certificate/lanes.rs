@@ -18,7 +18,7 @@ pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     coefficient.abs().is_below(MIN_LEADING_COEFFICIENT)
 }
 
-/// Returns the lanes in which the polynomial `a t + b`, with small leading coefficients dropped, is certainly not
+/// Returns the lanes in which the polynomial `a t + b`, with small leading coefficients dropped, is provably not
 /// positive within the step.
 #[inline(always)]
 pub fn is_line_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
@@ -43,7 +43,7 @@ fn is_line_excluded_exactly<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     !((before & nothing.lt(zero)) | (after & zero.le(one)))
 }
 
-/// Returns the lanes in which the polynomial `a t² + b t + c`, with small leading coefficients dropped, is certainly
+/// Returns the lanes in which the polynomial `a t² + b t + c`, with small leading coefficients dropped, is provably
 /// not positive within the step.
 #[inline(always)]
 pub fn is_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
@@ -81,14 +81,14 @@ fn is_within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
 }
 
 /// Returns the lanes in which an impact is excluded for a particle-particle or particle-half-plane pair, because one of
-/// its polynomials (a parabola and a line) is certainly not positive within the step.
+/// its polynomials (a parabola and a line) is provably not positive within the step.
 #[inline(always)]
 pub fn excludes_two_polynomials<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     is_never_positive(a, b, c) | is_line_never_positive(d, e)
 }
 
 /// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
-/// certainly not positive within the step, and the search among all of them would end. `ends` has the lanes in which
+/// provably not positive within the step, and the search among all of them would end. `ends` has the lanes in which
 /// the searches of the first and the last would end.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(

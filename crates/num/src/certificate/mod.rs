@@ -1,4 +1,4 @@
-//! Proofs that no root search is needed, because there is certainly no impact within the step.
+//! Proofs that no root search is needed, because there is provably no impact within the step.
 //!
 //! A detection asks whether [`first_time`](super::first_time::first_time) is at most 1. Usually it is not, and a few
 //! multiplications prove that. A search may be skipped only if its result is known, so the positive sets *as found* by
@@ -47,8 +47,8 @@ crate::closed_set! {
     }
 }
 
-/// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or
-/// infinite), with a margin that covers the root finder's own errors, and whether its search certainly ends. `false`
+/// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is provably greater than 1 (or
+/// infinite), with a margin that covers the root finder's own errors, and whether its search provably ends. `false`
 /// means "unknown".
 ///
 /// Coefficients that are not finite give `false` unless a polynomial of degree at most two decides and every polynomial
@@ -79,14 +79,14 @@ pub fn find_list_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -
     if searches { confirm_exclusion(lists, best) } else { best }
 }
 
-/// Returns the level for lists with a polynomial that needs a search; `known` is the result of the others.
-fn confirm_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
+/// Returns the level for lists of which at least one needs a search; `best` is the best level of the others.
+fn confirm_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, best: Option<Level>) -> Option<Level> {
     let mut searched = lists.filter(|list| list.len() > 3);
     if !searched.clone().all(search_terminates) {
         return None;
     }
-    if known.is_some() {
-        return known;
+    if best.is_some() {
+        return best;
     }
     searched
         .any(|list| is_rejected_and_not_positive(list) || bernstein::is_never_positive(list))

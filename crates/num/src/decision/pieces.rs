@@ -11,7 +11,7 @@ use super::{
     range::{BernsteinForm, Problem, slack},
 };
 
-/// The number of halvings after which a piece stays open.
+/// The maximum number of halvings. A piece that is still undecided after them stays undecided.
 const MAX_DEPTH: u32 = 150;
 
 /// The width below which a piece stays open, as a share of the piece's end. The ends of wider pieces are exact.

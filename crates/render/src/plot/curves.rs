@@ -52,37 +52,37 @@ impl PolynomialPlot<'_> {
         let row_top = |row: usize| BOTTOM + 30.0 + ROW_HEIGHT * row as f64;
         let height = row_top(rows) + 12.0;
         let mut sheet = Sheet::new(height, self.title, &self.description(), embedding);
-        sheet.text([16.0, 18.0], Anchor::Start, TextColor::Plain, self.title);
+        sheet.draw_text([16.0, 18.0], Anchor::Start, TextColor::Plain, self.title);
         let ticks = [0.0, 0.25, 0.5, 0.75, 1.0];
         sheet.draw_rules(Ink::Grid, &ticks.map(|tick| ([x(tick), TOP], [x(tick), row_top(rows)])));
         for tick in ticks {
-            sheet.text([x(tick), BOTTOM + 16.0], Anchor::Middle, TextColor::Faint, &format_short(tick));
+            sheet.draw_text([x(tick), BOTTOM + 16.0], Anchor::Middle, TextColor::Faint, &format_short(tick));
         }
-        sheet.text([RIGHT, BOTTOM + 16.0 - 18.0], Anchor::End, TextColor::Faint, "t");
+        sheet.draw_text([RIGHT, BOTTOM + 16.0 - 18.0], Anchor::End, TextColor::Faint, "t");
         sheet.draw_rule(Ink::Axis, [LEFT, MIDDLE], [RIGHT, MIDDLE]);
-        sheet.text([LEFT - 8.0, TOP + 10.0], Anchor::End, TextColor::Faint, "positive");
-        sheet.text([LEFT - 8.0, MIDDLE + 4.0], Anchor::End, TextColor::Faint, "0");
-        sheet.text([LEFT - 8.0, BOTTOM - 2.0], Anchor::End, TextColor::Faint, "negative");
+        sheet.draw_text([LEFT - 8.0, TOP + 10.0], Anchor::End, TextColor::Faint, "positive");
+        sheet.draw_text([LEFT - 8.0, MIDDLE + 4.0], Anchor::End, TextColor::Faint, "0");
+        sheet.draw_text([LEFT - 8.0, BOTTOM - 2.0], Anchor::End, TextColor::Faint, "negative");
         for (number, curve) in self.curves.iter().enumerate() {
             let ink = Ink::Series(number);
             draw(curve, ink, number, &mut sheet);
             let top = row_top(number);
-            sheet.line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
+            sheet.draw_line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
             sheet.draw_marker(ink, [19.0, top + 8.0]);
-            sheet.text([36.0, top + 12.0], Anchor::Start, TextColor::Plain, &curve.name);
+            sheet.draw_text([36.0, top + 12.0], Anchor::Start, TextColor::Plain, &curve.name);
             draw_sets(curve.positive, ink, top, 0.75, &mut sheet);
         }
         if let Some(common) = self.common {
             let top = row_top(rows - 1);
             sheet.draw_rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
-            sheet.text([36.0, top + 12.0], Anchor::Start, TextColor::Mark, "all positive");
+            sheet.draw_text([36.0, top + 12.0], Anchor::Start, TextColor::Mark, "all positive");
             draw_sets(common, Ink::Mark, top, 1.0, &mut sheet);
         }
         if let Some(time) = self.impact.filter(|time| (0.0..=1.0).contains(time)) {
-            sheet.line(Ink::Mark, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
+            sheet.draw_line(Ink::Mark, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
             let (place, anchor) =
                 if time < 0.6 { (x(time) + 5.0, Anchor::Start) } else { (x(time) - 5.0, Anchor::End) };
-            sheet.text([place, TOP + 4.0], anchor, TextColor::Mark, &format!("impact at {}", format_short(time)));
+            sheet.draw_text([place, TOP + 4.0], anchor, TextColor::Mark, &format!("impact at {}", format_short(time)));
         }
         sheet.finish()
     }

@@ -23,7 +23,7 @@ impl PassPlot<'_> {
     /// Renders the plot.
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
-        sheet.text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);
+        sheet.draw_text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);
         let steps = self.expected.len().max(self.actual.len());
         let columns = Columns::for_steps(steps);
         let most = self.expected.iter().copied().chain(self.actual.iter().copied().flatten()).max().unwrap_or(0).max(1);
@@ -31,7 +31,7 @@ impl PassPlot<'_> {
         let every = (most / 4).max(1);
         for count in (0..=most).step_by(every as usize) {
             sheet.draw_rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
-            sheet.text([LEFT - 8.0, y(count) + 4.0], Anchor::End, TextColor::Faint, &count.to_string());
+            sheet.draw_text([LEFT - 8.0, y(count) + 4.0], Anchor::End, TextColor::Faint, &count.to_string());
         }
         sheet.draw_steps(&columns, BOTTOM + 16.0, HEIGHT - 6.0);
         let (mut expected, mut actual, mut differing) = (Vec::new(), Vec::new(), Vec::new());

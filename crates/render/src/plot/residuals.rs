@@ -38,7 +38,7 @@ impl ResidualPlot<'_> {
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
-        sheet.text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);
+        sheet.draw_text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);
         let scale = Scale::from_plot(self);
         scale.draw(&mut sheet);
         let columns = Columns::for_steps(steps);
@@ -47,14 +47,14 @@ impl ResidualPlot<'_> {
             && (1..=steps).contains(&(step as usize))
         {
             let x = columns.x(step as usize - 1);
-            sheet.line(Ink::Mark, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
+            sheet.draw_line(Ink::Mark, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
             let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
-            sheet.text([place, TOP - LANE_HEIGHT + 8.0], anchor, TextColor::Mark, &format!("step {step}: {why}"));
+            sheet.draw_text([place, TOP - LANE_HEIGHT + 8.0], anchor, TextColor::Mark, &format!("step {step}: {why}"));
         }
         let y = scale.y(self.tolerance);
-        sheet.line(Ink::Mark, 1.5, &[[LEFT, y], [RIGHT, y]]);
+        sheet.draw_line(Ink::Mark, 1.5, &[[LEFT, y], [RIGHT, y]]);
         let tolerance = format!("tolerance {}", format_short(self.tolerance));
-        sheet.text([RIGHT, y - 4.0], Anchor::End, TextColor::Mark, &tolerance);
+        sheet.draw_text([RIGHT, y - 4.0], Anchor::End, TextColor::Mark, &tolerance);
         for (number, series) in self.series.iter().enumerate() {
             let ink = Ink::Series(number);
             let points: Vec<[f64; 2]> = (0..columns.columns)
@@ -129,10 +129,10 @@ impl Scale {
             let share = f64::from(power - self.low) / f64::from(self.high - self.low);
             let y = BOTTOM - share * (BOTTOM - TOP);
             sheet.draw_rule(Ink::Grid, [LEFT, y], [RIGHT, y]);
-            sheet.text([LEFT - 8.0, y + 4.0], Anchor::End, TextColor::Faint, &format!("1e{power}"));
+            sheet.draw_text([LEFT - 8.0, y + 4.0], Anchor::End, TextColor::Faint, &format!("1e{power}"));
         }
         sheet.draw_rule(Ink::Axis, [LEFT, BOTTOM + LANE_HEIGHT], [RIGHT, BOTTOM + LANE_HEIGHT]);
-        sheet.text([LEFT - 8.0, BOTTOM + LANE_HEIGHT + 4.0], Anchor::End, TextColor::Faint, "0");
+        sheet.draw_text([LEFT - 8.0, BOTTOM + LANE_HEIGHT + 4.0], Anchor::End, TextColor::Faint, "0");
     }
 }
 

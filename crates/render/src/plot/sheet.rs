@@ -145,7 +145,7 @@ impl Sheet {
     }
 
     /// Draws a line with the ink's dashes.
-    pub fn line(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
+    pub fn draw_line(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         if points.len() < 2 {
             return;
         }
@@ -215,7 +215,7 @@ impl Sheet {
     }
 
     /// Draws a line of text. The position `[x, y]` is on its base line.
-    pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, color: TextColor, text: &str) {
+    pub fn draw_text(&mut self, [x, y]: [f64; 2], anchor: Anchor, color: TextColor, text: &str) {
         // A text starts at its position unless another alignment is set.
         let anchor = match anchor {
             Anchor::Start if self.is_styled => "",
@@ -240,14 +240,14 @@ impl Sheet {
     /// Draws the axis of the steps, with numbers on one line and its name on another.
     pub fn draw_steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
         for tick in ticks(columns.steps) {
-            self.text([columns.x(tick - 1), numbers], Anchor::Middle, TextColor::Faint, &tick.to_string());
+            self.draw_text([columns.x(tick - 1), numbers], Anchor::Middle, TextColor::Faint, &tick.to_string());
         }
-        self.text([RIGHT, name], Anchor::End, TextColor::Faint, "step");
+        self.draw_text([RIGHT, name], Anchor::End, TextColor::Faint, "step");
     }
 
     /// Draws the line of series `number` of `series_count`, with its markers between those of the others.
     pub fn draw_series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, series_count: usize) {
-        self.line(ink, 1.5, points);
+        self.draw_line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);
         points
             .iter()
@@ -260,11 +260,11 @@ impl Sheet {
     pub fn draw_legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
         let mut x = left;
         for &(ink, name) in names {
-            self.line(ink, 2.0, &[[x, base - 4.0], [x + 26.0, base - 4.0]]);
+            self.draw_line(ink, 2.0, &[[x, base - 4.0], [x + 26.0, base - 4.0]]);
             if !matches!(ink, Ink::Mark) {
                 self.draw_marker(ink, [x + 13.0, base - 4.0]);
             }
-            self.text([x + 32.0, base], Anchor::Start, TextColor::Plain, name);
+            self.draw_text([x + 32.0, base], Anchor::Start, TextColor::Plain, name);
             #[expect(clippy::cast_precision_loss, reason = "names are short")]
             let wide = name.chars().count() as f64;
             // Small screens show larger letters.

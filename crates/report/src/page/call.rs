@@ -95,13 +95,13 @@ fn changes_sign(study: &Study) -> bool {
 
 /// Describes the polynomials whose signs do not change within the step.
 fn describe_signs(study: &Study) -> String {
-    let roles = |is_wanted: bool| {
+    let list_roles = |is_wanted: bool| {
         let is_positive =
             |curve: &study::Curve| curve.positive_intervals.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
         let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
         names.map(|curve| curve.role.to_string()).collect::<Vec<_>>().join(", ")
     };
-    let parts = [("positive", roles(true)), ("not positive", roles(false))];
+    let parts = [("positive", list_roles(true)), ("not positive", list_roles(false))];
     let parts = parts.iter().filter(|(_, names)| !names.is_empty());
     let parts: Vec<String> = parts.map(|(sign, names)| format!("{sign}: {names}")).collect();
     format!("No expected polynomial changes its sign in the step. {}.", parts.join("; "))
@@ -154,8 +154,9 @@ fn positive_intervals(own: &[f64]) -> Vec<Interval> {
 fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
     for own in logged.iter().map(|own| positive_intervals(own)) {
-        let both = |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
-        common = common.iter().flat_map(|one| own.iter().map(move |other| both(one, other))).collect();
+        let intersect =
+            |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
+        common = common.iter().flat_map(|one| own.iter().map(move |other| intersect(one, other))).collect();
         common.retain(|set| set.lo <= set.hi);
     }
     common

@@ -3,7 +3,7 @@ use super::{
     Card,
     card_details::{self, CardDetail, OUTPUT_BUDGET},
     case::mistakes,
-    markup::{count_scenes, escape, note},
+    markup::{count_scenes, escape, render_note},
     render_document, render_template, script, smallest,
 };
 use crate::untrusted_text::{remove_escape_codes, to_one_line};

@@ -49,10 +49,10 @@ pub(super) fn count_scenes(count: usize) -> String {
 }
 
 /// Renders a course's note and its link.
-pub(super) fn note(note: Option<&CourseNote>) -> String {
+pub(super) fn render_note(note: Option<&CourseNote>) -> String {
     let Some(note) = note else { return String::new() };
     let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", escape(address));
-    format!(" <span class=\"hint\">The course: {}.</span> ", note.line(escape, link))
+    format!(" <span class=\"hint\">The course: {}.</span> ", note.format_line(escape, link))
 }
 
 /// Renders a line whose formulas are written in HTML, with mathematical signs and with letters that have subscripts.

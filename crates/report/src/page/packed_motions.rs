@@ -21,7 +21,7 @@ const MAX_EXACT_VALUES: usize = 16_000;
 /// The number of units across the extent of all bodies, for rounded positions.
 const UNITS_PER_EXTENT: f64 = 65536.0;
 
-/// The number that stands for a value that is NaN, or that is too large for a number of units.
+/// The code for a value that is NaN, or too large to be written as a number of units.
 const NO_UNIT_MARK: i64 = 1 << 40;
 
 /// The precision of stored motions.

@@ -5,7 +5,7 @@
 use crate::{
     cli::{console, input},
     render::Extent,
-    report::describe::no_result,
+    report::describe::describe_step_error,
     scene::Scene,
     sim::{RootSearch, Simulation},
     trace::{Frame, Layout},
@@ -127,7 +127,7 @@ pub(super) fn simulate_reference(scene: &Scene, picks: StepRange) -> Result<Moti
     let mut stopped = None;
     for step in 1..=picks.last {
         if let Err(error) = simulation.step(&mut ()) {
-            stopped = Some(no_result(&error));
+            stopped = Some(describe_step_error(&error));
             break;
         }
         keeper.step(step, &simulation.state().positions)?;

@@ -1,7 +1,7 @@
 //! The observer that follows a submission through one step, and counts the differences that it cannot follow.
 //!
 //! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows the decisions, and
-//! `quick_matches` skips the bounds of polynomials that are clearly right.
+//! `quick_matches` skips the bounds of polynomials that are right by a wide margin.
 mod decisions;
 mod passes;
 mod polynomials;
@@ -144,7 +144,7 @@ impl<'a> Follower<'a> {
         self
     }
 
-    /// Returns the logged polynomials of a call, if their root search certainly ends.
+    /// Returns the logged polynomials of a call, if their root search provably ends.
     fn searchable_polynomials(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MAX_POLYNOMIALS]> {
         let mut found = [Polynomial::default(); PairKind::MAX_POLYNOMIALS];
         for (number, polynomial) in found[..count].iter_mut().enumerate() {

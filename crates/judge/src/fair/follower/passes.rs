@@ -1,4 +1,4 @@
-//! Counts a step's logged detection passes, and finds the positions that they certainly used.
+//! Counts a step's logged detection passes, and finds the positions that they provably used.
 use super::Follower;
 use crate::finding::{FindingDetail, Part};
 use fosssim_model::{
@@ -63,7 +63,7 @@ impl<'a> Follower<'a> {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
-    /// Returns the end positions of the step that this pass certainly uses, because the trace contains them.
+    /// Returns the end positions of the step that this pass provably uses, because the trace contains them.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
         let number = self.passes[self.pass_part()];

@@ -1,4 +1,5 @@
-//! Accepts calls whose polynomials are clearly right, judged by the reference's own coefficients without bounds.
+//! Accepts calls whose polynomials are right by a wide margin, judged by the reference's own coefficients without
+//! bounds.
 use super::Follower;
 use crate::fair::{
     compare::{MAX_SAFE_SUM, Match, Similarity},
@@ -19,15 +20,15 @@ use fosssim_num::{
     vector::{Vec2, vector_at},
 };
 
-/// The comparisons of a call's polynomials that are clearly right.
+/// The comparisons of a call's polynomials that are right by a wide margin.
 pub(super) type QuickMatches = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
 /// For each polynomial of a kind of pair, the sum of absolute values above which the polynomial exceeds round-off.
 pub(super) type RoundOffFloors = PairKindMap<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
-    /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
-    /// accepts them as well.
+    /// Returns the logged polynomials of a call that are right by a wide margin.
+    /// [`compare`](crate::fair::compare::compare) accepts them as well.
     #[inline]
     pub(super) fn find_quick_matches(
         &mut self,

@@ -88,7 +88,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     })
 }
 
-/// Returns the traits that distinguish pairs that are applied `times` times (0 or 2) from pairs that are applied once.
+/// Returns the traits by which pairs that are applied `times` times (0 or 2) differ from pairs that are applied once.
 /// If there are several, those with the fewest exceptions are returned.
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {

@@ -166,7 +166,7 @@ impl NearbyPairs {
     }
 }
 
-/// Returns whether the vector is certainly not shorter than `reach`, computed without a square root.
+/// Returns whether the vector is provably not shorter than `reach`, computed without a square root.
 ///
 /// With `s` the rounded `reach * reach`, a rounded squared length above `s` is at least the next number after `s`,
 /// hence above the exact square of `reach`; its root is then at least `reach` after rounding too. A negative `reach`

@@ -169,7 +169,9 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, 1.0) => return None,
         StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
-        StageDetail::Vectors(ratios) => format!("{} as long along the right one", describe_ratio(*ratios)),
+        StageDetail::Vectors(ratios) => {
+            format!("{} as long in the direction of the right one", describe_ratio(*ratios))
+        }
         StageDetail::VectorError(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", describe_ratio(*ratios)),
         StageDetail::TimeError(offset) => format!("off by {offset:.6}"),
