@@ -17,7 +17,7 @@ const GRACE_PERIOD: Duration = Duration::from_secs(20);
 ///
 /// Fails if connections can no longer be accepted.
 pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToken) -> io::Result<()> {
-    // Each connection may also need a file, so raise the limit of open files as far as the kernel allows.
+    // Each connection may also need a file, so raise the limit of open files to the kernel's maximum.
     let maximum = getrlimit(Resource::Nofile).maximum;
     if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
         tracing::debug!(%error, "cannot raise the limit of open files");

@@ -34,7 +34,7 @@ const KEPT_FOLDER: &str = "sha256";
 const TRASH_FOLDER: &str = "aside";
 
 /// The age above which an existing artifact is written again when it is stored again. The removal of unreferenced
-/// artifacts goes by age, and must not remove an artifact to which the database is about to refer.
+/// artifacts removes old ones, and must not remove an artifact to which the database will soon refer.
 const FRESH_AGE: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.

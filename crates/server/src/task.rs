@@ -104,7 +104,7 @@ impl Suite {
     }
 }
 
-/// The codes of verdicts without any run: the submission was unusable, or was not built.
+/// The codes of verdicts without a run, because the submission was unusable or could not be built.
 pub const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
 /// The result of a grading. The grader writes it, a worker reports it, and the service shows it.

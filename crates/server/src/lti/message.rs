@@ -1,4 +1,4 @@
-//! A platform's message about a person who comes from there (LTI 5), and the parts of it that are trusted after all
+//! A platform's message about a person who signs in (LTI 5), and the parts of it that are trusted after all
 //! checks.
 use super::{
     Platform,

@@ -53,7 +53,7 @@ impl Lti {
         self.client.over_http
     }
 
-    /// Reads a platform's message about a person who comes from there, and makes all checks of SEC 5.1.3.
+    /// Reads a platform's message about a person who signs in, and makes all checks of SEC 5.1.3.
     ///
     /// # Errors
     ///

@@ -22,7 +22,7 @@ const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 /// share an address.
 const MAX_LOGINS: u32 = 3000;
 
-/// The message for a sign-in that did not begin here, that was already answered, or that took too long.
+/// The message for a sign-in that began elsewhere, was already answered, or took too long.
 pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
 /// A sign-in that has begun, with the secrets that the answer must contain.

@@ -160,7 +160,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// Fails if the person is not a member and has submitted nothing.
+    /// Fails if the person is not a member and has no submissions.
     pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;

@@ -31,7 +31,7 @@ const HOUR: i64 = 60 * MINUTE;
 pub struct Upload<'a> {
     /// The form of the submission: a program, sources or traces.
     pub form: Form,
-    /// The upload's name, which is a plain file name.
+    /// The upload's name: a file name without folders.
     pub name: &'a str,
     /// The file with the upload's bytes.
     pub file: &'a Path,

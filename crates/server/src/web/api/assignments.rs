@@ -72,7 +72,7 @@ pub(super) struct Extension {
     #[schema(schema_with = time_schema, required = true)]
     due_at: Option<i64>,
     /// The ID of the newest event of the audit log that the sender has seen. If this extension was changed after
-    /// it, the request is rejected. Without this field, it is not checked.
+    /// it, the request is rejected. Without this field, nothing is checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     #[serde(rename = "seen")]
     seen_event: Option<i64>,

@@ -109,7 +109,7 @@ pub(super) struct MarkInput {
     #[schema(max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     comment: String,
     /// The time of the newest mark that the sender has seen, in milliseconds since 1970. If there is a later mark, the
-    /// request is rejected. Without this field, it is not checked.
+    /// request is rejected. Without this field, nothing is checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     marked_at: Option<i64>,
 }

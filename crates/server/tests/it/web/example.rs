@@ -24,7 +24,7 @@ async fn two_commands_and_an_upload(fresh: Fresh) {
     assert_eq!(class[0]["login"], "student");
     // An administrator sees the size of a course and missing staff. Staff see how many students have submitted.
     let courses = admin.get("/admin").expect(200).text();
-    assert!(courses.contains("\"submissions\">1<") && courses.contains("nobody: <a"), "{courses}");
+    assert!(courses.contains("\"submissions\">1<") && courses.contains("none: <a"), "{courses}");
     // The log of a new server begins with its creation.
     let log = admin.get("/admin/log").expect(200).text();
     assert!(

@@ -191,7 +191,7 @@ fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     let unusable = eve.submit("physics", &program("US", 0));
     eve.wait_for_grade("physics", unusable);
     let page = eve.get(&format!("/c/physics/s/{unusable}")).expect(200).text();
-    assert!(page.contains("fix what the report names first") && !page.contains("o longer right"), "{page}");
+    assert!(page.contains("fix the first fault that the report names") && !page.contains("o longer right"), "{page}");
 }
 
 /// Checks that points need a reason, lie between zero and the maximum, and come from staff.

@@ -132,7 +132,7 @@ timeZone?.addEventListener("input", () => {
   }
   timeZone.setCustomValidity(fault);
 });
-// Fill in the addresses of a learning platform from its host.
+// Fill in the URLs of a learning platform from its host.
 const kind = document.getElementById("kind");
 if (kind) {
   const host = document.getElementById("host");
