@@ -212,7 +212,7 @@ async fn write_result(
     };
     match about.regrade_id {
         None => log_event(transaction, &about, "graded", &text).await?,
-        Some(_) => log_event(transaction, &about, "regraded", &format!("{text}, if the regrade is applied")).await?,
+        Some(_) => log_event(transaction, &about, "previewed", &format!("{text}, if the regrade is applied")).await?,
     }
     Ok(about)
 }

@@ -36,7 +36,7 @@ pub(super) fn short_mistake(summary: &str) -> String {
 
 /// Cuts a text that is too long for a cell of a table.
 pub(super) fn shorten(text: &str) -> String {
-    let beginning: String = text.chars().take(110).collect();
+    let beginning: String = text.chars().take(180).collect();
     let words = beginning.rsplit_once(' ').map_or(beginning.as_str(), |(words, _)| words);
     if beginning.len() < text.len() { format!("{words} ...") } else { beginning }
 }
