@@ -1,7 +1,7 @@
 //! The report on one trace. It contains the verdict, the residuals, the fair rules' judgement, the findings and the
 //! first difference.
 //!
-//! [`text`](Check::text) renders the report as text, and [`json`](Check::json) renders it as JSON
+//! [`render_text`](Check::render_text) renders the report as text, and [`json`](Check::json) renders it as JSON
 //! (`schemas/check.schema.json`). Both have the same content, which depends only on the outcome.
 
 pub(crate) mod advice;

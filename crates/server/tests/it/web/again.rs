@@ -117,7 +117,7 @@ fn a_suite_that_can_t_work_is_refused() {
         let file = b"--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"s\"\r\n\r\nx\r\n--b--\r\n";
         let page = admin.send("POST", "/c/physics/a/m1/suite", &form, file).expect(422).text();
         assert!(
-            page.contains("href=\"/c/physics/a/m1/settings?x=1\">Back") && page.contains(">Milestone one<"),
+            page.contains("href=\"/c/physics/a/m1/settings?x=1\" data-back>Back") && page.contains(">Milestone one<"),
             "{page}"
         );
         // The new suite's hidden groups are not those that were published.
