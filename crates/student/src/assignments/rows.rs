@@ -1,8 +1,9 @@
 //! Everything that a student's program can do differently, one row each.
 //!
 //! There are two kinds of rows: `wrong` programs have a mistake and write a different trace; `variant`s are correct
-//! except for round-off or a positive factor. The place in the simulation where a mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
-//! are in [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
+//! except for round-off or a positive factor. The place in the simulation where a mistake is made calls
+//! [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces are in
+//! [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
 pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
 

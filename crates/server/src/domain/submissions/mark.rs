@@ -108,13 +108,13 @@ impl Staff {
         let ungraded = Problem::conflict("the submission is not graded yet", "wait for its grade");
         ensure(points.is_none() || submission.grade.is_some(), ungraded)?;
         // Without a maximum, the grader failed. Points that were given before stay allowed.
-        let most = submission.grade.and_then(|grade| grade.outcome.max_points).unwrap_or_else(|| "1000000".to_owned());
+        let max = submission.grade.and_then(|grade| grade.outcome.max_points).unwrap_or_else(|| "1000000".to_owned());
         let is_number = |text: &str| {
             text.len() <= 30
                 && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
-                && text.parse().is_ok_and(|points| (0.0..=most.parse().unwrap_or(1e6)).contains(&points))
+                && text.parse().is_ok_and(|points| (0.0..=max.parse().unwrap_or(1e6)).contains(&points))
         };
-        let number = format!("points must be a number between 0 and {}, such as 7.5", round_points(&most));
+        let number = format!("points must be a number between 0 and {}, such as 7.5", round_points(&max));
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
             ensure(points.is_none_or(is_number), Problem::invalid(number))?;
