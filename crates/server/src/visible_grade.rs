@@ -40,9 +40,9 @@ pub fn verdict(code: &str) -> &str {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct VisibleGrade {
     verdict: String,
-    code: String,
-    points: Option<String>,
-    max_points: Option<String>,
+    pub(crate) code: String,
+    pub(crate) points: Option<String>,
+    pub(crate) max_points: Option<String>,
     summary: String,
 }
 
@@ -167,16 +167,6 @@ impl VisibleGrade {
             "" => None,
             text => Some(serde_json::from_str(text).unwrap_or_else(|_| empty_grade())),
         }
-    }
-
-    /// Returns the points and the maximum number of points.
-    pub fn into_points(self) -> (Option<String>, Option<String>) {
-        (self.points, self.max_points)
-    }
-
-    /// Returns the verdict's code and the points.
-    pub fn verdict_and_points(self) -> (String, Option<String>) {
-        (self.code, self.points)
     }
 
     /// Reduces an outcome to the part that students see. Digests, sizes and exact times are also removed, because they

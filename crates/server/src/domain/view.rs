@@ -131,6 +131,9 @@ pub struct Mark {
     /// The points that count instead of the grader's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<String>,
+    /// The grader's points, less the deduction for being late.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grader_points: Option<String>,
     /// The reason for the points that staff set, or another comment on the submission.
     pub comment: String,
     /// The login of the member of staff who last wrote the mark.
@@ -180,10 +183,14 @@ pub struct History {
     pub old_code: Option<String>,
     /// The points before the change.
     pub old_points: Option<String>,
+    /// The maximum of the points before the change.
+    pub old_max_points: Option<String>,
     /// The code of the verdict after the change.
     pub new_code: String,
     /// The points after the change.
     pub new_points: Option<String>,
+    /// The maximum of the points after the change.
+    pub new_max_points: Option<String>,
     /// The ID of the result that counts after the change.
     pub result: i64,
     /// The grader's version.
@@ -304,7 +311,7 @@ pub struct QueueWorker {
 from_row! {
     Account { id, login, name, is_admin }
     Course { slug, title }
-    Mark { points = "mark_points", comment, by = "marker", marked_at, request, requested_at }
+    Mark { points = "mark_points", grader_points = "points", comment, by = "marker", marked_at, request, requested_at }
     Event { id, happened_at, kind, actor = "login", course, assignment, submission, number, owner, text }
     QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
 }
@@ -378,13 +385,19 @@ fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Shows the points that staff set, if any, instead of the grader's. They are not reduced for being late.
+    /// Shows the points that staff set, if any, instead of the grader's, which the mark keeps. The points of staff are
+    /// not reduced for being late.
     pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
-        let by_hand = self.mark.as_ref().and_then(|mark| mark.points.clone());
         let points = grade.outcome.points.take();
-        grade.outcome.points =
-            by_hand.or_else(|| points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points))));
+        let points = points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points)));
+        grade.outcome.points = match &mut self.mark {
+            Some(mark) => {
+                mark.grader_points = points;
+                mark.points.clone().or_else(|| mark.grader_points.clone())
+            }
+            None => points,
+        };
     }
 }
 
@@ -462,8 +475,9 @@ pub(super) async fn history(
     is_staff: bool,
 ) -> Result<Vec<History>, DbError> {
     let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
-           old.points AS old_points, old.shown AS old_shown, new.shown AS new_shown, grade_change.old_result,
-           grade_change.given, new.id AS result, new.code AS new_code, new.points AS new_points, new.version,
+           old.points AS old_points, old.max_points AS old_max_points, old.shown AS old_shown,
+           new.shown AS new_shown, grade_change.old_result, grade_change.given, new.id AS result,
+           new.code AS new_code, new.points AS new_points, new.max_points AS new_max_points, new.version,
            new.grader, new.task
         FROM grade_change
         JOIN result AS new ON new.id = grade_change.new_result
@@ -471,21 +485,20 @@ pub(super) async fn history(
         LEFT JOIN account ON account.id = grade_change.changed_by
         WHERE grade_change.submission = ? ORDER BY grade_change.id";
     let rows = transaction.rows(statement, values![submission]).await?;
-    let read_shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
+    let read_shown = |row: &Row, column: &str| -> Result<Option<VisibleGrade>, DbError> {
         let text = row.maybe_text(column)?.filter(|_| withheld);
-        Ok(text.as_deref().and_then(VisibleGrade::from_text).map(VisibleGrade::verdict_and_points))
+        Ok(text.as_deref().and_then(VisibleGrade::from_text))
     };
     let mut by_hand = None;
     let read = |row: &Row| {
-        let old = match read_shown(row, "old_shown")? {
-            Some((code, points)) => (Some(code), points),
-            None => (row.maybe_text("old_code")?, row.maybe_text("old_points")?),
+        let (old_code, old_points, old_max_points) = match read_shown(row, "old_shown")? {
+            Some(shown) => (Some(shown.code), shown.points, shown.max_points),
+            None => (row.maybe_text("old_code")?, row.maybe_text("old_points")?, row.maybe_text("old_max_points")?),
         };
-        let new = match read_shown(row, "new_shown")? {
-            Some(line) => line,
-            None => (row.text("new_code")?, row.maybe_text("new_points")?),
+        let (new_code, new_points, new_max_points) = match read_shown(row, "new_shown")? {
+            Some(shown) => (shown.code, shown.points, shown.max_points),
+            None => (row.text("new_code")?, row.maybe_text("new_points")?, row.maybe_text("new_max_points")?),
         };
-        let ((old_code, old_points), (new_code, new_points)) = (old, new);
         let old_points = by_hand.clone().or(old_points);
         // The points that staff set count instead of the grader's until staff remove them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
@@ -496,8 +509,10 @@ pub(super) async fn history(
             changed_at: if withheld { round_to_hour(row.int("changed_at")?) } else { row.int("changed_at")? },
             old_code,
             old_points,
+            old_max_points,
             new_code,
             new_points: by_hand.clone().or(new_points),
+            new_max_points,
             by_what: describe_task(&row.text("task")?, is_staff),
             task: if is_staff { row.text("task")? } else { String::new() },
         }))

@@ -174,7 +174,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
         is_waiting |= matches!(state.as_str(), "waiting" | "running");
         let withheld = row.maybe_text("shown")?.filter(|_| row.maybe_int("published_at").is_ok_and(|at| at.is_none()));
         let (points, max_points) = match withheld.as_deref().and_then(VisibleGrade::from_text) {
-            Some(shown) => shown.into_points(),
+            Some(shown) => (shown.points, shown.max_points),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
         let late = Lateness::from_row(row)?;

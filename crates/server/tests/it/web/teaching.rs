@@ -20,10 +20,10 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let path = "/api/v1/courses/physics/members";
     let members = || teacher.get(path).expect(200).json().as_array().expect("a list").len();
     // A wrong line is reported with its number, and no member is added.
-    let wrong = teacher.send("POST", path, &csv, b"Ada,ada\nEve,e v e\n").expect(200).json();
-    assert!(wrong[0]["error"].is_null() && wrong[1]["error"].is_string() && wrong[1]["line"] == 2, "{wrong}");
-    let page =
-        teacher.post_form("/c/physics/members/import", "table=Ada,ada%0AEve,e+v+e&import=yes").expect(200).text();
+    let wrong = teacher.send("POST", path, &csv, b"name,login\nAda,ada\nEve,e v e\n").expect(200).json();
+    assert!(wrong[0]["error"].is_null() && wrong[1]["error"].is_string() && wrong[1]["line"] == 3, "{wrong}");
+    let wrong = "table=name,login%0AAda,ada%0AEve,e+v+e&import=yes";
+    let page = teacher.post_form("/c/physics/members/import", wrong).expect(200).text();
     assert!(page.contains("no member was added"), "{page}");
     let table = "name,login,email,role\nAda,ada,ada@example.org,\nCarol,carol,,staff\nBoss,admin,,staff\n";
     let form = "table=name,login,email,role%0AAda,ada,ada@example.org,%0ACarol,carol,,staff%0ABoss,admin,,staff%0A";
@@ -55,8 +55,8 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     assert!(page.contains("not used: Matriculation.") && page.contains("dora,Dora,4711"), "{page}");
     assert_eq!(members(), 4);
     // A name that a spreadsheet would read as a formula is marked as text.
-    let page =
-        teacher.post_form("/c/physics/members/import", "table=%3D1%2B1,mallory%0A&import=yes").expect(200).text();
+    let formula = "table=name,login%0A%3D1%2B1,mallory%0A&import=yes";
+    let page = teacher.post_form("/c/physics/members/import", formula).expect(200).text();
     assert!(
         page.contains("data:text/csv;charset=utf-8,Name%2CLogin%2CE-mail%2CRole%2CLink%0A%27%3D1%2B1%2C"),
         "{page}"
@@ -92,6 +92,8 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "68.5");
     let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
     assert!(page.contains("68.5 of 100 points") && page.contains("You are right"), "{page}");
+    let words = "Staff gave 68.5 points</strong> instead of the grader's 30 (";
+    assert!(page.contains(words), "{page}");
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains("68.5 of 100") && !class.contains("odd"), "{class}");
     assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",68.5,"));
@@ -123,14 +125,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 of 100"), "{page}");
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "30");
-    // Both are in the history, and a comment alone changes no grade.
-    teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "by the way"}"#).expect(200);
-    let history = ada.get(&format!("{}/history", place(ids[1]))).expect(200).json();
-    let changes: Vec<_> = history.as_array().expect("a list")[1..].iter().collect();
-    let line = |change: &serde_json::Value| ["by", "reason", "old_points", "new_points"].map(|key| change[key].clone());
-    assert_eq!(changes.len(), 2, "{history}");
-    assert_eq!(line(changes[0]), ["teacher", "points by hand: You are right", "30", "68.5"]);
-    assert_eq!(line(changes[1]), ["teacher", "the grader's points again: after all", "68.5", "30"]);
+    check_history(&teacher, &ada, ids[1]);
     // An extension for one student.
     let wish = r#"{"title": "M", "visible": true, "settings": {"per_hour": 0, "due_at": "2026-01-01T00:00Z"}}"#;
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
@@ -146,6 +141,20 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     // No data about it remains when the person is removed.
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
+}
+
+/// Checks that both marks are in the history, and that a comment alone changes no grade.
+fn check_history(teacher: &Client, ada: &Client, id: i64) {
+    let place = format!("/api/v1/courses/physics/submissions/{id}");
+    teacher.send("PUT", &format!("{place}/mark"), JSON, br#"{"comment": "by the way"}"#).expect(200);
+    let history = ada.get(&format!("{place}/history")).expect(200).json();
+    let changes: Vec<_> = history.as_array().expect("a list")[1..].iter().collect();
+    let line = |change: &serde_json::Value| ["by", "reason", "old_points", "new_points"].map(|key| change[key].clone());
+    assert_eq!(changes.len(), 2, "{history}");
+    assert_eq!(line(changes[0]), ["teacher", "points by hand: You are right", "30", "68.5"]);
+    assert_eq!(line(changes[1]), ["teacher", "the grader's points again: after all", "68.5", "30"]);
+    let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
+    assert!(page.contains(", 68.5 of 100 points</td><td") && page.contains(", 30 of 100 points</td>"), "{page}");
 }
 
 /// Checks that the class page filters students by category and by mistake.
