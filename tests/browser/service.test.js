@@ -245,6 +245,18 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("button", { name: "Compare" }).click();
   await page.getByText("Both are right on the same scenes").waitFor();
   await checkAccessibility(page);
+  // "Back" of an error page returns to the form, which keeps what was typed.
+  await page.goto(`${address}/c/physics/s/1`);
+  await page.getByText("Points and comment").click();
+  await page.getByLabel("Other points").fill("500");
+  await page.getByLabel("Comment").fill("Typed once");
+  await page.getByRole("button", { name: "Save points and comment" }).click();
+  await page.getByText("points must be a number between 0 and 10").waitFor();
+  await page.getByRole("link", { name: "Back" }).click();
+  await page.waitForURL(`${address}/c/physics/s/1`);
+  assert.equal(await page.locator("#comment").inputValue(), "Typed once");
+  assert.ok(await page.locator("#comment").isVisible(), "the form is open");
+  teacher.complaints.splice(0);
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "Regrade" }).click();
   await page.getByLabel("Reason").fill("Nobody should fail this");
@@ -317,8 +329,15 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.goto(`${address}/c/physics/a/m1`);
   const due = await page.locator("time[datetime]").first().getAttribute("datetime");
   assert.equal(new Date(due).getTime(), await page.evaluate(() => new Date("2096-07-01T23:59").getTime()));
+  // From now on, dates are in the time zone that was set.
   await page.goto(`${address}/c/physics/a/m1/settings`);
-  assert.equal(await page.getByLabel("Due", { exact: true }).inputValue(), "2096-07-01T23:59");
+  assert.equal(await page.locator("#due-zone-name").innerText(), "Europe/Berlin");
+  assert.equal(await page.getByLabel("Due", { exact: true }).inputValue(), "2096-07-02T04:29");
+  await page.getByLabel("Due", { exact: true }).fill("2096-12-01T18:00");
+  await page.getByRole("button", { name: "Save" }).click();
+  await page.getByText("Saved.").waitFor();
+  await page.goto(`${address}/c/physics/a/m1`);
+  assert.equal(await page.locator("time[datetime]").first().getAttribute("datetime"), "2096-12-01T17:00:00.000+00:00");
   assert.deepEqual(teacher.complaints, []);
   assert.deepEqual(student.complaints, []);
   await teacher.close();

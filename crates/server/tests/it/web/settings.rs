@@ -30,11 +30,21 @@ async fn settings_are_a_form(fresh: Fresh) {
             "late_days": 2, "late_percent": 25})
     );
     let page = admin.get(path).expect(200).text();
-    for part in
-        ["value=\"2026-12-01T22:59\"", "<option value=\"course-2027\" selected>", "value=\"0.5\"", ">UTC</span>"]
-    {
+    for part in [
+        "value=\"2026-12-01T22:59\"",
+        "<option value=\"course-2027\" selected>",
+        "value=\"0.5\"",
+        ">UTC</span>",
+        ">suite's default (fair rules)<",
+        ">suite's default (what)<",
+    ] {
         assert!(page.contains(part), "{part}: {page}");
     }
+    assert!(!page.contains("data-zone"), "{page}");
+    send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0&time_zone=Europe/Berlin")).expect(303);
+    let page = admin.get(path).expect(200).text();
+    assert!(page.contains("data-zone=\"Europe/Berlin\" value=\"2026-12-01T22:59\""), "{page}");
+    send(path, &format!("{form}&due=2026-12-01T22:59&due_zone=0")).expect(303);
     let page = admin.get("/c/physics/a/m1").expect(200).text();
     let time = "00.000+00:00\" title=\"2026-12-01 22:59:00 UTC\">2026-12-01 22:59 UTC</time>";
     assert!(page.contains(&format!("<time datetime=\"2026-12-01T22:59:{time}")), "{page}");
@@ -114,10 +124,12 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
     assert!(members().contains(">staff</span>"));
     admin.send("DELETE", &format!("/api/v1/courses/physics/members/bob?seen={seen}"), &[], b"").expect(409);
-    let table = format!("table=Bob,bob,,student%0A&import=yes&seen={seen}");
+    let table = format!("table=name,login%0ABob,bob%0A&import=yes&seen={seen}");
     admin.post_form("/c/physics/members/import", &table).expect(409);
     let csv = [("Content-Type", "text/csv")];
-    admin.send("POST", &format!("/api/v1/courses/physics/members?seen={seen}"), &csv, b"Bob,bob\n").expect(409);
+    admin
+        .send("POST", &format!("/api/v1/courses/physics/members?seen={seen}"), &csv, b"name,login\nBob,bob\n")
+        .expect(409);
     admin.post_form("/c/physics/members", &format!("login=eve&name=Eve&role=student&seen={seen}")).expect(200);
     admin.post_form("/c/physics/members/bob/remove", "").expect(303);
     // More time, too.

@@ -107,18 +107,22 @@ if (form) {
 for (const time of document.querySelectorAll("time[datetime]")) {
   time.textContent = new Date(time.dateTime).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 }
-// Convert fields, too: they arrive in UTC, and are sent with their time zone.
+// Convert fields, too: they arrive in UTC, and are sent with their time zone. This is the assignment's time zone, if it
+// is set, and otherwise the reader's.
 for (const field of document.querySelectorAll("input[type=datetime-local]")) {
   const zone = document.getElementById(`${field.id}-zone`);
   const name = document.getElementById(`${field.id}-zone-name`);
-  const offset = (date) => -date.getTimezoneOffset();
+  const timeZone = field.dataset.zone ?? Intl.DateTimeFormat().resolvedOptions().timeZone;
+  // Swedish times have the form of ISO 8601. The offset is in minutes.
+  const offset = (date) => Math.round((new Date(`${date.toLocaleString("sv", { timeZone })}Z`) - date) / 60000);
   if (field.defaultValue) {
     const date = new Date(`${field.defaultValue}Z`);
     field.value = new Date(date.getTime() + offset(date) * 60000).toISOString().slice(0, 16);
   }
-  name.textContent = Intl.DateTimeFormat().resolvedOptions().timeZone;
+  name.textContent = timeZone;
   field.form.addEventListener("submit", () => {
-    zone.value = field.value ? offset(new Date(field.value)) : 0;
+    const asUtc = new Date(`${field.value}Z`);
+    zone.value = field.value ? offset(new Date(asUtc - offset(asUtc) * 60000)) : 0;
   });
 }
 // Mark a time zone that does not exist.
