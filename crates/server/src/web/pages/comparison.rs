@@ -67,11 +67,7 @@ pub(super) async fn show_page(
     let login = if number.is_some() { &first.login } else { query.with.trim() };
     let mut history = staff.student_history(&assignment.slug, login).await?.submissions.into_iter();
     let other = history.find(|attempt| attempt.grade.is_some() && number.is_none_or(|number| attempt.number == number));
-    let missing = || {
-        let detail = format!("there is no graded submission of {:?}", query.with.trim());
-        let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();
-        Problem { detail, remedy, ..Problem::not_found("") }
-    };
+    let missing = || Problem::not_found("graded submission");
     let other = other.ok_or_else(missing)?;
     let find_result = |submission: &Submission| submission.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
     let results = [find_result(&first)?, find_result(&other)?];

@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, render,
 };
 use crate::{
-    domain::{App, NewSecret, Visitor},
+    domain::{App, NewSecret, Person, Visitor},
     problem::Problem,
 };
 use askama::Template;
@@ -121,8 +121,13 @@ pub(super) async fn sign_in_by_token(visitor: Visitor, Fields(form): Fields<Toke
 }
 
 /// Shows the page of a sign-in link. Opening the link does not sign in yet, because mail programs also open links.
-pub(super) async fn show_welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
-    render(&WelcomePage { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
+pub(super) async fn show_welcome(
+    visitor: Visitor,
+    person: Result<Person, Problem>,
+    AddressParts { secret, .. }: AddressParts,
+) -> Page {
+    let frame = person.map_or_else(|_| PageFrame::default(), |person| PageFrame::for_account(&person.account));
+    render(&WelcomePage { frame, owner: visitor.link_owner(&secret).await? })
 }
 
 pub(super) async fn use_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {

@@ -94,7 +94,9 @@ async fn a_browser_gets_pages_and_goes_on_where_it_wanted(fresh: Fresh) {
     let visitor = server.visitor();
     let session = visitor.welcome(&link);
     let page = visitor.get(&format!("/welcome/{link}")).expect(200).text();
-    assert!(page.contains("used or too old") && !page.contains("<button>Sign in"), "{page}");
+    assert!(page.contains("used or too old") && page.contains("Ask the course") && !page.contains("<button"), "{page}");
+    let page = session.get(&format!("/welcome/{link}")).expect(200).text();
+    assert!(page.contains("You are signed in as admin") && !page.contains("Ask the course"), "{page}");
     let made = session.post_json("/api/v1/tokens", r#"{"name": "tests"}"#).expect(201).json();
     let token = made["token"].as_str().expect("a token");
     let admin = server.with_token(token);
@@ -145,7 +147,8 @@ async fn numbers_and_staff_are_kept(fresh: Fresh) {
     let wish = |name: &str, role: &str| format!(r#"{{"name": "{name}", "role": "{role}"}}"#);
     let change = |by: &Client, body: &str| by.send("PUT", &format!("{members}/teacher"), JSON, body.as_bytes());
     change(&teacher, &wish("T", "student")).expect(409);
-    let imported = teacher.send("POST", members, &[("Content-Type", "text/csv")], b"T,teacher,,student\n").expect(200);
+    let csv = [("Content-Type", "text/csv")];
+    let imported = teacher.send("POST", members, &csv, b"name,login,role\nT,teacher,student\n").expect(200);
     assert!(imported.json()[0]["error"].is_string(), "the line says why nobody was imported");
     teacher.send("DELETE", &format!("{members}/teacher"), &[], b"").expect(409);
     teacher.get("/c/physics/members").expect(200);
