@@ -19,7 +19,8 @@ use crate::{
 };
 use askama::Template;
 use fosssim_findings::{
-    Build, Grade, GroupGrade, SceneGrade, Visibility, located_failure::LocatedFailure, smallest_scene::SmallestScene,
+    Build, Grade, GroupGrade, SceneGrade, Verdict, Visibility, located_failure::LocatedFailure,
+    smallest_scene::SmallestScene,
 };
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_mistakes::together::immediate_grade;
