@@ -54,21 +54,21 @@ pub fn describe_with_alternatives(explanation: &Explanation) -> String {
 }
 
 /// Returns lines with the exact form of the mistake: the terms of each coefficient, and the weights of the terms. The
-/// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, lines
-/// about other weights that fit are left out.
+/// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, its term is
+/// enough, and lines about weights are left out.
 pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
-    let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
     if let (ExplanationTopic::Pairs(wrong), [_, ..]) = (&explanation.topic, &explanation.details[..]) {
         lines.extend(wrong_pairs::list_details(wrong));
     }
-    for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
+    for detail in &explanation.details {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
             Detail::SearchArea(Area::Integrator) => Some(describe_step_area(&explanation.key).to_owned()),
             Detail::SearchArea(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
+            Detail::Polynomial(PolynomialDetail::Weight(_) | PolynomialDetail::Alternative(_)) if is_exact => None,
             Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
             Detail::Stage(detail) => stages::describe_detail(detail),
         };
