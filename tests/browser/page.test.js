@@ -485,7 +485,7 @@ test("what is dragged onto the page is taken, whichever tab is open: a trace, a 
   trace(WRONG[0], null, `dragged/${WRONG[0]}.bin`);
   await drag(page, [join(folder, "dragged")]);
   await page.waitForFunction(() => document.documentElement.dataset.marked === "1", null, { timeout: 60_000 });
-  assert.match(await page.locator("#folder-name").textContent(), /^dragged, 1 trace$/);
+  assert.match(await page.locator("#folder-name").textContent(), /^dragged, 1 of 116 traces$/);
   const suite = join(folder, "dragged.toml");
   writeFileSync(suite, `schema = 1\nname = "one"\n[[group]]\nname = "G"\npoints = 7\nscenes = ["asset:${WRONG[0]}"]\n`);
   await drag(page, [suite]);
@@ -559,6 +559,7 @@ test("a pair is moved: its numbers are those of the command beside them", async 
   const { page, complaints, close } = await openPage(browser, html);
   await page.locator("#tab-pair").click();
   await page.waitForSelector("html[data-looked]");
+  assert.match(await page.locator("#decision").innerText(), /they collide/i, "the first pair collides");
   for (const [preset, words] of [
     ["first", /-361 t\^4 - 304 t\^3 - 468 t\^2 - 288 t/],
     ["second", /-16 t\^4 - 68 t\^2 \+ 36 t - 16/],

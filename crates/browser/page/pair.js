@@ -55,7 +55,7 @@ const PRESETS = {
   },
   plane: { kind: "ph", points: [[0, 2, 1, -3]], radii: [0.5], plane: [0, 0, 0.2, 1] },
 };
-const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.first) };
+const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.balls) };
 
 function renderFields() {
   const { kind, points, radii, plane } = pair.now,

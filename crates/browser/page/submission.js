@@ -53,7 +53,6 @@ async function acceptFolder(name, found) {
         .sort((a, b) => b.path.length - a.path.length)
         .map(({ path, file }) => [path.replace(/\.(zst|gz)$/i, ""), file]),
     );
-    $("folder-name").textContent = `${name}, ${formatCount(traces.length, "trace")}`;
   }
   if (grading.files.size) return gradeAll();
   $("marks-said").textContent = suite
@@ -90,6 +89,8 @@ async function gradeAll() {
       scenes.map((scene) => ({ group: name, scene })),
     );
     const topFolder = findTopFolder(names);
+    const foundCount = names.filter(({ scene }) => findTrace(scene, topFolder)).length;
+    $("folder-name").textContent = `${grading.name}, ${foundCount} of ${formatCount(names.length, "trace")}`;
     $("marks-bar").max = names.length;
     for (const [number, { group, scene }] of names.entries()) {
       $("marks-bar").value = number;
