@@ -551,6 +551,10 @@ test("a scene is written: messages in place, its motion, and files that are the 
   );
   assert.match(await page.locator("#problems").innerText(), /`time` of .* must be a number, not `x`/);
   assert.equal(await page.locator("#marks mark").last().innerText(), "x");
+  // Faults of the markup come first, because other errors may follow from them.
+  await page.locator("#source").fill('<scene>\n  <duration time="x"/>\n  <integrator type="none"\n</scene>\n');
+  await page.getByRole("button", { name: "4:1" }).waitFor();
+  assert.match(await page.locator("#problems").innerText(), /^3:3 [^]*4:1 [^]*2:19 /);
   assert.deepEqual(complaints, []);
   await close();
 });
