@@ -247,7 +247,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await checkAccessibility(page);
   // "Back" of an error page returns to the form, which keeps what was typed.
   await page.goto(`${address}/c/physics/s/1`);
-  await page.getByText("Points and comment").click();
+  await page.getByText("Points and comment", { exact: true }).click();
   await page.getByLabel("Other points").fill("500");
   await page.getByLabel("Comment").fill("Typed once");
   await page.getByRole("button", { name: "Save points and comment" }).click();

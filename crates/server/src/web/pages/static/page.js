@@ -31,6 +31,11 @@ document.querySelector("[data-back]")?.addEventListener("click", (event) => {
   event.preventDefault();
   history.back();
 });
+// A folded form in which something was typed is open again.
+addEventListener("pageshow", () => {
+  for (const fold of document.querySelectorAll("details.fold:not([open])"))
+    fold.open = [...fold.querySelectorAll("input, textarea")].some((field) => field.value !== field.defaultValue);
+});
 // Send a form for which a person need not decide anything.
 document.querySelector("form[data-send]")?.submit();
 // Show elements that need a script.
