@@ -1,7 +1,7 @@
 "use strict";
 // Sorts tables after a click on a column heading, and shows only the rows with some text, a verdict or a mistake.
 (() => {
-  const value = (row, column) => {
+  const sortValue = (row, column) => {
     const cell = row.cells[column];
     if (cell.dataset.sort === undefined) return cell.textContent.trim().toLowerCase();
     return cell.dataset.sort === "" ? -Infinity : Number(cell.dataset.sort);
@@ -11,24 +11,24 @@
       ? a - b || 0
       : String(a).localeCompare(String(b), undefined, { numeric: true });
   for (const table of document.querySelectorAll("table.sortable")) {
-    const heads = [...table.tHead.rows[0].cells];
+    const headings = [...table.tHead.rows[0].cells];
     const rows = [...table.tBodies[0].rows];
-    heads.forEach((head, column) => {
+    headings.forEach((heading, column) => {
       const button = document.createElement("button");
       button.type = "button";
       button.className = "sort";
-      button.append(...head.childNodes);
-      head.append(button);
+      button.append(...heading.childNodes);
+      heading.append(button);
       button.addEventListener("click", () => {
         // The first click sorts numbers from the largest, and text from a.
-        const numbers = rows.some((row) => row.cells[column].dataset.sort !== undefined);
-        const now = head.getAttribute("aria-sort");
-        const up = now === null ? !numbers : now === "descending";
-        heads.forEach((one) => one.removeAttribute("aria-sort"));
-        head.setAttribute("aria-sort", up ? "ascending" : "descending");
+        const hasNumbers = rows.some((row) => row.cells[column].dataset.sort !== undefined);
+        const order = heading.getAttribute("aria-sort");
+        const isAscending = order === null ? !hasNumbers : order === "descending";
+        headings.forEach((other) => other.removeAttribute("aria-sort"));
+        heading.setAttribute("aria-sort", isAscending ? "ascending" : "descending");
         const sorted = rows
-          .map((row) => [value(row, column), row])
-          .sort(([a], [b]) => (up ? compare(a, b) : compare(b, a)));
+          .map((row) => [sortValue(row, column), row])
+          .sort(([a], [b]) => (isAscending ? compare(a, b) : compare(b, a)));
         table.tBodies[0].append(...sorted.map(([, row]) => row));
       });
     });
@@ -48,9 +48,9 @@
   // Rows of scenes: the scene under the pointer is named, and a click opens it.
   const block = document.getElementById("scenes");
   const scenes = block ? JSON.parse(block.textContent) : [];
-  const pointed = document.querySelector(".pointed");
+  const sceneLabel = document.querySelector(".pointed");
   for (const svg of document.querySelectorAll("td.heat svg")) {
-    const under = (event) => {
+    const sceneUnder = (event) => {
       const box = svg.getBoundingClientRect();
       return scenes[
         Math.max(0, Math.min(scenes.length - 1, Math.floor(((event.clientX - box.left) / box.width) * scenes.length)))
@@ -58,13 +58,13 @@
     };
     const link = svg.closest("tr").querySelector("a");
     svg.addEventListener("pointermove", (event) => {
-      pointed.textContent = `${link.textContent}: ${under(event)}`;
+      sceneLabel.textContent = `${link.textContent}: ${sceneUnder(event)}`;
     });
     svg.addEventListener("pointerleave", () => {
-      pointed.textContent = "";
+      sceneLabel.textContent = "";
     });
     svg.addEventListener("click", (event) => {
-      location.href = `${link.href}#${new URLSearchParams({ scene: under(event) })}`;
+      location.href = `${link.href}#${new URLSearchParams({ scene: sceneUnder(event) })}`;
     });
   }
   const filter = document.querySelector("p.filter.rows");
@@ -72,7 +72,7 @@
     const rows = [...document.querySelector("table.sortable").tBodies[0].rows];
     const search = filter.querySelector("input");
     const choices = [...filter.querySelectorAll("select")];
-    const show = () => {
+    const applyFilter = () => {
       const wanted = search.value.trim().toLowerCase();
       const isWanted = (row) =>
         row.textContent.toLowerCase().includes(wanted) &&
@@ -81,11 +81,11 @@
       const shown = rows.filter((row) => !row.hidden).length;
       filter.querySelector("output").textContent = `${shown} of ${rows.length}`;
     };
-    filter.addEventListener("input", show);
+    filter.addEventListener("input", applyFilter);
     for (const button of document.querySelectorAll("[data-only]")) {
       button.addEventListener("click", () => {
         choices.find((choice) => choice.dataset.by === "mistakes").value = button.dataset.only;
-        show();
+        applyFilter();
         filter.scrollIntoView();
       });
     }

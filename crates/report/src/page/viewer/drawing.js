@@ -1,12 +1,12 @@
 // The drawing on the canvases.
 class Drawing extends Motion {
-  look() {
+  update() {
     const { data } = this;
-    const close = this.close();
+    const close = this.closeUp();
     if (close ? this.pass >= close.passes.length : this.pass >= 0) this.pass = -1;
     this.slider.value = this.step;
     this.midBox.checked = this.mid;
-    this.slider.setAttribute("aria-valuetext", `step ${this.step}, ${this.classWords()}`);
+    this.slider.setAttribute("aria-valuetext", `step ${this.step}, ${this.classText()}`);
     this.stepBox.value = this.step;
     this.inside.value = this.t;
     this.insideText.textContent = this.t.toFixed(3);
@@ -16,19 +16,19 @@ class Drawing extends Motion {
     );
     this.passes.value = this.pass;
     this.inside.disabled = this.step <= data.first;
-    if (!this.playing) this.choose();
+    if (!this.playing) this.selectWrongPair();
     this.draw();
     this.drawStrip();
     this.drawTicks();
-    this.tell();
+    this.showText();
     if (!this.playing) {
-      this.tellMatrix();
-      this.tellNumbers();
-      this.tellTable();
+      this.showMatrix();
+      this.showNumbers();
+      this.showTable();
     }
     document.dispatchEvent(new CustomEvent("moment", { detail: { key: this.key, step: this.step } }));
   }
-  classWords(step = this.step) {
+  classText(step = this.step) {
     return (
       { r: "right", w: "wrong by itself", i: "right by itself, but it starts from a wrong state" }[
         this.data.strip[step - 1]
@@ -48,11 +48,11 @@ class Drawing extends Motion {
       if (Number.isFinite(size)) most = Math.max(most, size);
     }
     // Ignore differences that rounding alone can cause.
-    const least = this.isExact() ? 0 : 2 * this.data.rounded.unit;
-    return { list, most: most > least ? most : 0, base };
+    const rounding = this.isExact() ? 0 : 2 * this.data.rounded.unit;
+    return { list, most: most > rounding ? most : 0, base };
   }
   // The size of letters, which must be readable on a phone.
-  letters() {
+  letterSize() {
     return Math.round(14 * Math.max(1, Math.min(2.2, 960 / (this.canvas.clientWidth || 960))));
   }
   // Draws both motions on top of each other, or the expected one next to the actual one.
@@ -96,23 +96,24 @@ class Drawing extends Motion {
       });
     if (panel === "both" && !this.peeking) this.arrows(context);
     if (panel !== "expected" && !this.peeking) this.contacts(context);
-    context.font = `${this.letters()}px system-ui, sans-serif`;
+    context.font = `${this.letterSize()}px system-ui, sans-serif`;
     const at = `step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`;
-    const words = panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`;
+    const caption =
+      panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`;
     // Lines of the scene end below the text.
     context.fillStyle = color("--card");
-    context.fillRect(this.view[0], 0, 20 + 0.56 * this.letters() * words.length, 14 + this.letters());
+    context.fillRect(this.view[0], 0, 20 + 0.56 * this.letterSize() * caption.length, 14 + this.letterSize());
     context.fillStyle = color("--ink");
-    context.fillText(words, this.view[0] + 10, 6 + this.letters());
+    context.fillText(caption, this.view[0] + 10, 6 + this.letterSize());
   }
   // Draws the motion at another step as a small preview.
-  peek(step) {
+  drawPreview(step) {
     const { step: now, t, pass, mid } = this;
     const context = this.preview.querySelector("canvas").getContext("2d");
     Object.assign(this, { step, t: 1, pass: -1, mid: false, peeking: true });
     context.setTransform(0.4, 0, 0, 0.4, 0, 0);
     this.draw(context);
-    this.preview.lastChild.textContent = `${step}: ${this.classWords()}`;
+    this.preview.lastChild.textContent = `${step}: ${this.classText()}`;
     Object.assign(this, { step: now, t, pass, mid, peeking: false });
   }
   bodies(context, positions, { stroke, fill, dash, label }) {
@@ -123,8 +124,11 @@ class Drawing extends Motion {
     context.lineWidth = 2;
     context.strokeStyle = stroke;
     edges.forEach(([i, j, r], index) => {
-      const [a, b] = [this.to(positions[2 * i], positions[2 * i + 1]), this.to(positions[2 * j], positions[2 * j + 1])];
-      if (!finite(...a, ...b)) return;
+      const [a, b] = [
+        this.toPixels(positions[2 * i], positions[2 * i + 1]),
+        this.toPixels(positions[2 * j], positions[2 * j + 1]),
+      ];
+      if (!areFinite(...a, ...b)) return;
       const chosen = label && this.isSelected("edge", index);
       if (fill && r * scale > 0.5) {
         context.setLineDash([]);
@@ -150,8 +154,8 @@ class Drawing extends Motion {
       }
     });
     for (let k = 0; k < n; k++) {
-      const [x, y] = this.to(positions[2 * k], positions[2 * k + 1]);
-      if (!finite(x, y)) continue;
+      const [x, y] = this.toPixels(positions[2 * k], positions[2 * k + 1]);
+      if (!areFinite(x, y)) continue;
       const chosen = label && this.isSelected("particle", k);
       const size = Math.max(1.5, radii[k] * scale);
       if (x + size < 0 || y + size < 0 || x - size > this.canvas.width || y - size > this.canvas.height || size > 1e5)
@@ -167,7 +171,7 @@ class Drawing extends Motion {
       context.stroke();
       if (label && n <= 60) {
         context.fillStyle = color("--ink");
-        context.font = `${this.letters() - 2}px system-ui, sans-serif`;
+        context.font = `${this.letterSize() - 2}px system-ui, sans-serif`;
         context.textAlign = "center";
         context.fillText(this.data.fixed[k] ? `${k} fixed` : `${k}`, x, y + 4);
         context.textAlign = "start";
@@ -185,14 +189,14 @@ class Drawing extends Motion {
       context.strokeStyle = chosen ? color("--bad") : color("--ink");
       context.fillStyle = color("--ground");
       context.lineWidth = chosen ? 4 : 2;
-      const a = this.to(px - uy * far, py + ux * far);
-      const b = this.to(px + uy * far, py - ux * far);
-      const deep = [-ux * far * this.scale(), uy * far * this.scale()];
+      const a = this.toPixels(px - uy * far, py + ux * far);
+      const b = this.toPixels(px + uy * far, py - ux * far);
+      const depth = [-ux * far * this.scale(), uy * far * this.scale()];
       context.beginPath();
       context.moveTo(...a);
       context.lineTo(...b);
-      context.lineTo(b[0] + deep[0], b[1] + deep[1]);
-      context.lineTo(a[0] + deep[0], a[1] + deep[1]);
+      context.lineTo(b[0] + depth[0], b[1] + depth[1]);
+      context.lineTo(a[0] + depth[0], a[1] + depth[1]);
       context.fill();
       context.beginPath();
       context.moveTo(...a);
@@ -201,7 +205,7 @@ class Drawing extends Motion {
     });
   }
   zones(context) {
-    const close = this.close();
+    const close = this.closeUp();
     const state = this.positions("submission");
     if (!close || !close.zones.length || !state) return;
     const last = close.zones[close.zones.length - 1];
@@ -209,12 +213,14 @@ class Drawing extends Motion {
     context.fillStyle = color("--zonefill");
     context.lineWidth = 1.5;
     for (const zone of last.zones) {
-      const points = zone.particles.map((k) => this.to(state[2 * k], state[2 * k + 1])).filter((p) => finite(...p));
-      const around = hull(points);
-      if (around.length < 1) continue;
+      const points = zone.particles
+        .map((k) => this.toPixels(state[2 * k], state[2 * k + 1]))
+        .filter((p) => areFinite(...p));
+      const outline = convexHull(points);
+      if (outline.length < 1) continue;
       context.lineJoin = "round";
       context.beginPath();
-      around.forEach((p, k) => (k ? context.lineTo(...p) : context.moveTo(...p)));
+      outline.forEach((p, k) => (k ? context.lineTo(...p) : context.moveTo(...p)));
       context.closePath();
       context.lineWidth = 26;
       context.strokeStyle = color("--zonefill");
@@ -224,24 +230,27 @@ class Drawing extends Motion {
     }
   }
   arrows(context) {
-    const apart = this.difference();
-    this.magnified.hidden = !(apart && apart.most > 0);
+    const difference = this.difference();
+    this.magnified.hidden = !(difference && difference.most > 0);
     if (this.magnified.hidden) return;
-    const wantedFactor = (0.12 * this.extent) / this.zoom / apart.most,
-      ten = 10 ** Math.floor(Math.log10(wantedFactor));
-    const auto = Math.max(1, ten * (wantedFactor >= 5 * ten ? 5 : wantedFactor >= 2 * ten ? 2 : 1));
-    const factor = this.magnify === null ? auto : this.magnify;
+    const wantedFactor = (0.12 * this.extent) / this.zoom / difference.most,
+      powerOfTen = 10 ** Math.floor(Math.log10(wantedFactor));
+    const automatic = Math.max(
+      1,
+      powerOfTen * (wantedFactor >= 5 * powerOfTen ? 5 : wantedFactor >= 2 * powerOfTen ? 2 : 1),
+    );
+    const factor = this.magnify === null ? automatic : this.magnify;
     this.factor.value = Math.log10(factor);
-    this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : short(factor)} times (largest difference ${short(apart.most)})`;
+    this.factorText.textContent = `${factor >= 1e4 ? factor.toExponential(1) : formatShort(factor)} times (largest difference ${formatShort(difference.most)})`;
     if (!this.show.arrows) return;
     context.strokeStyle = context.fillStyle = color("--bad");
     context.lineWidth = 2;
     for (let k = 0; k < this.data.n; k++) {
-      const [dx, dy] = apart.list[k];
-      if (!(Math.hypot(dx, dy) > apart.most * 1e-3)) continue;
-      const from = this.to(apart.base[2 * k], apart.base[2 * k + 1]);
-      const to = this.to(apart.base[2 * k] + factor * dx, apart.base[2 * k + 1] + factor * dy);
-      arrow(context, from, to);
+      const [dx, dy] = difference.list[k];
+      if (!(Math.hypot(dx, dy) > difference.most * 1e-3)) continue;
+      const from = this.toPixels(difference.base[2 * k], difference.base[2 * k + 1]);
+      const to = this.toPixels(difference.base[2 * k] + factor * dx, difference.base[2 * k + 1] + factor * dy);
+      drawArrow(context, from, to);
       context.beginPath();
       context.arc(...from, 18, 0, 7);
       context.setLineDash([1, 4]);
@@ -250,22 +259,22 @@ class Drawing extends Motion {
     }
   }
   contacts(context) {
-    const close = this.close();
+    const close = this.closeUp();
     this.spots = [];
     if (!close) return;
     const draw = (list, stroke, dash, filled) => {
       for (const [pair, time, nx, ny] of list) {
-        const place = this.place(pair, time);
+        const place = this.contactPlace(pair, time);
         const length = Math.hypot(nx, ny);
         if (!place || !(length > 0)) continue;
-        const from = this.to(...place);
+        const from = this.toPixels(...place);
         const to = [from[0] + (nx / length) * 46, from[1] - (ny / length) * 46];
-        if (!finite(...from, ...to)) continue;
+        if (!areFinite(...from, ...to)) continue;
         this.spots.push([pair, ...from]);
         context.strokeStyle = context.fillStyle = stroke;
         context.lineWidth = filled ? 2 : 3;
         context.setLineDash(dash);
-        arrow(context, from, to);
+        drawArrow(context, from, to);
         context.setLineDash([]);
         context.beginPath();
         if (filled) context.arc(...from, 5, 0, 7);
@@ -279,19 +288,19 @@ class Drawing extends Motion {
     if (this.pass <= 0) draw(close.actual, color("--own"), [], false);
   }
   // The place of a particle's contact at a time within the step: its center as detection computes it.
-  place(pair, time) {
-    const { first } = parse(pair);
+  contactPlace(pair, time) {
+    const { first } = parsePair(pair);
     const start = this.state("submission", this.step - 1);
-    const close = this.close();
+    const close = this.closeUp();
     const pass = close && close.passes[Math.max(0, this.pass)];
-    if (!start || !pass || first >= this.data.n || !finite(time)) return null;
+    if (!start || !pass || first >= this.data.n || !areFinite(time)) return null;
     return [0, 1].map((axis) => start[2 * first + axis] + time * (pass.q[2 * first + axis] - start[2 * first + axis]));
   }
   drawStrip() {
     const context = this.strip.getContext("2d");
     const { strip, steps, first, last } = this.data;
     const { width, height } = this.strip;
-    const wide = width / Math.max(1, steps);
+    const stepWidth = width / Math.max(1, steps);
     context.fillStyle = color("--card");
     context.fillRect(0, 0, width, height);
     const order = { u: 0, r: 1, i: 2, w: 3 };
@@ -307,15 +316,15 @@ class Drawing extends Motion {
         if (order[letter] > order[worst]) worst = letter;
       }
       const x = (column * width) / columns;
-      const w = Math.max(1, width / columns);
+      const barWidth = Math.max(1, width / columns);
       context.fillStyle = color({ r: "--good", w: "--bad", i: "--warn", u: "--faint" }[worst]);
       // The height distinguishes the steps without color.
-      const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
-      context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
+      const barHeight = { r: 8, i: 14, w: 22, u: 3 }[worst];
+      context.fillRect(x, height - 4 - barHeight, barWidth > 3 ? barWidth - 1 : barWidth, barHeight);
     }
     // The current step has a frame, and a marker above it.
-    const left = Math.max(0, this.step - 1) * wide,
-      most = this.step > 0 ? Math.max(4, wide) : 2,
+    const left = Math.max(0, this.step - 1) * stepWidth,
+      most = this.step > 0 ? Math.max(4, stepWidth) : 2,
       middle = left + most / 2;
     context.fillStyle = context.strokeStyle = color("--ink");
     context.lineWidth = 2;
@@ -325,10 +334,10 @@ class Drawing extends Motion {
     context.lineTo(middle + 7, 0);
     context.lineTo(middle, 8);
     context.fill();
-    if (first > 0 || last < steps) context.fillRect(first * wide, height - 2, (last - first) * wide, 2);
+    if (first > 0 || last < steps) context.fillRect(first * stepWidth, height - 2, (last - first) * stepWidth, 2);
   }
   drawTicks() {
-    const close = this.close();
+    const close = this.closeUp();
     const marks = [];
     if (close) {
       const hits = this.pass >= 0 ? close.passes[this.pass].hits : close.expected;
@@ -352,7 +361,7 @@ class Drawing extends Motion {
     const { selected } = this;
     if (!selected) return false;
     if (selected.pair) {
-      const { kind: which, first, second } = parse(selected.pair);
+      const { kind: which, first, second } = parsePair(selected.pair);
       return (
         (kind === "particle" && (index === first || (which === "pp" && index === second))) ||
         (kind === PAIRS[which] && index === second && which !== "pp")

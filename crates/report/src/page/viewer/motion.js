@@ -18,15 +18,15 @@ class Motion {
     const { rounded } = this.data;
     return !rounded || (rounded.exact.includes(this.record(step, mid)) && this.t >= 1);
   }
-  close(step = this.step) {
-    return this.data.closeUps.find((one) => one.step === step) || null;
+  closeUp(step = this.step) {
+    return this.data.closeUps.find((closeUp) => closeUp.step === step) || null;
   }
   // Returns the submission's positions at the current moment, with straight lines within a step.
   positions(track) {
     const end = this.state(track, this.step, this.mid);
     if (this.t >= 1 && this.pass < 0) return end;
     const start = this.state(track, this.step - 1);
-    const close = this.close();
+    const close = this.closeUp();
     const target = track === "submission" && close && this.pass >= 0 ? close.passes[this.pass].q : end;
     if (!start || !target) return end;
     const out = new Float64Array(2 * this.data.n);
@@ -35,15 +35,15 @@ class Motion {
   }
   // Returns the state in which the step should have ended, computed from the submission's own state.
   expected() {
-    const close = this.close();
+    const close = this.closeUp();
     if (!close || (this.t < 1 && this.pass < 0)) return null;
     if (this.pass >= 0) return null;
     return this.mid ? close.mid : close.end || close.mid;
   }
   // Returns whether the impulses of a hybrid step already lead to a wrong state. The step's end starts from that state
   // and may be right.
-  midIsWrong() {
-    const close = this.close(),
+  isMidWrong() {
+    const close = this.closeUp(),
       own = this.state("submission", this.step, true);
     if (this.data.collision !== "hybrid" || !close || !close.mid || !own) return false;
     return close.mid.some((value, k) => !(Math.abs(value - own[k]) <= 1e-10));
@@ -54,96 +54,96 @@ class Motion {
     return expected || (this.show.reference ? this.positions("reference") : null);
   }
 
-  go(step) {
+  goToStep(step) {
     if (!Number.isFinite(step)) return;
     this.step = Math.max(this.data.first, Math.min(this.data.last, Math.round(step)));
     this.t = 1;
     this.pass = -1;
-    this.mid = this.midIsWrong();
+    this.mid = this.isMidWrong();
     this.magnify = null;
-    this.look();
+    this.update();
   }
-  finding(direction) {
+  goToWrongStep(direction) {
     const { strip } = this.data;
     for (let step = this.step + direction; step >= 1 && step <= strip.length; step += direction) {
-      if (strip[step - 1] === "w") return this.go(step);
+      if (strip[step - 1] === "w") return this.goToStep(step);
     }
     this.say.textContent = direction > 0 ? "There is no later wrong step." : "There is no earlier wrong step.";
   }
-  toggle() {
+  togglePlay() {
     if (this.playing) {
       cancelAnimationFrame(this.playing);
       this.playing = 0;
       this.play.textContent = "Play";
-      return this.look();
+      return this.update();
     }
     this.play.textContent = "Pause";
     let last = null;
-    if (this.step >= this.data.last) this.go(this.data.first);
-    const turn = (now) => {
+    if (this.step >= this.data.last) this.goToStep(this.data.first);
+    const playFrame = (now) => {
       // With reduced motion, play one step per second.
       const rate = prefersReducedMotion.matches ? 1 : this.speed * Math.max(4, Math.min(60, 1 / this.data.dt));
-      const gone = last === null ? 0 : ((now - last) / 1000) * rate;
-      if (last === null || gone >= 1) {
+      const elapsedSteps = last === null ? 0 : ((now - last) / 1000) * rate;
+      if (last === null || elapsedSteps >= 1) {
         last = now;
-        if (this.step >= this.data.last) return this.toggle();
-        this.go(this.step + Math.max(1, Math.floor(gone)));
+        if (this.step >= this.data.last) return this.togglePlay();
+        this.goToStep(this.step + Math.max(1, Math.floor(elapsedSteps)));
       }
-      this.playing = requestAnimationFrame(turn);
+      this.playing = requestAnimationFrame(playFrame);
     };
-    this.playing = requestAnimationFrame(turn);
+    this.playing = requestAnimationFrame(playFrame);
   }
-  key_down(event) {
+  handleKey(event) {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
-    const typing = event.target.tagName === "SELECT" || event.target.type === "number";
-    const ranging = event.target.type === "range";
-    const act = {
-      n: () => this.finding(1),
-      p: () => this.finding(-1),
-      0: () => this.whole(),
+    const isTyping = event.target.tagName === "SELECT" || event.target.type === "number";
+    const isSlider = event.target.type === "range";
+    const action = {
+      n: () => this.goToWrongStep(1),
+      p: () => this.goToWrongStep(-1),
+      0: () => this.showEverything(),
       z: () => {
-        this.approach();
-        this.look();
+        this.zoomToDifference();
+        this.update();
       },
-      s: () => this.besides(),
+      s: () => this.toggleSideBySide(),
       "?": () => {
         this.keys.open = !this.keys.open;
       },
-      " ": () => this.toggle(),
-      ArrowRight: () => this.go(this.step + (event.shiftKey ? 10 : 1)),
-      ArrowLeft: () => this.go(this.step - (event.shiftKey ? 10 : 1)),
-      Home: () => this.go(this.data.first),
-      End: () => this.go(this.data.last),
+      " ": () => this.togglePlay(),
+      ArrowRight: () => this.goToStep(this.step + (event.shiftKey ? 10 : 1)),
+      ArrowLeft: () => this.goToStep(this.step - (event.shiftKey ? 10 : 1)),
+      Home: () => this.goToStep(this.data.first),
+      End: () => this.goToStep(this.data.last),
       "+": () => {
         this.zoom *= 1.25;
-        this.look();
+        this.update();
       },
       "-": () => {
         this.zoom /= 1.25;
-        this.look();
+        this.update();
       },
     }[event.key];
     if (
-      !act ||
-      typing ||
-      (ranging && event.key.startsWith("Arrow")) ||
+      !action ||
+      isTyping ||
+      (isSlider && event.key.startsWith("Arrow")) ||
       (event.key === " " && /^(BUTTON|SUMMARY|INPUT)$/.test(event.target.tagName))
     )
       return;
     event.preventDefault();
-    act();
+    action();
   }
   fit() {
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
-    const reach = (x, y, r) => {
-      if (!finite(x, y) || Math.abs(x) > 1e12 || Math.abs(y) > 1e12) return;
+    const extend = (x, y, r) => {
+      if (!areFinite(x, y) || Math.abs(x) > 1e12 || Math.abs(y) > 1e12) return;
       x0 = Math.min(x0, x - r);
       y0 = Math.min(y0, y - r);
       x1 = Math.max(x1, x + r);
       y1 = Math.max(y1, y + r);
     };
     const { n, per, first, last, radii } = this.data;
-    const every = Math.max(1, Math.floor((last - first) / 400));
+    const stride = Math.max(1, Math.floor((last - first) / 400));
     for (const track of ["reference", "submission"]) {
       for (let step = first; step <= last; step += every) {
         const state = this.state(track, step);
@@ -155,7 +155,7 @@ class Motion {
             20 * (1 + Math.max(Math.abs(x0), x1, Math.abs(y0), y1))
         )
           break;
-        for (let k = 0; k < n; k++) reach(state[2 * k], state[2 * k + 1], radii[k]);
+        for (let k = 0; k < n; k++) extend(state[2 * k], state[2 * k + 1], radii[k]);
       }
     }
     if (!(x1 > x0)) [x0, y0, x1, y1] = [-1, -1, 1, 1];
@@ -163,32 +163,32 @@ class Motion {
     this.box = [x0 - margin, y0 - margin, x1 + margin, y1 + margin];
     this.extent = Math.max(x1 - x0, y1 - y0);
   }
-  whole() {
+  showEverything() {
     this.zoom = 1;
     this.pan = [0, 0];
-    this.look();
+    this.update();
   }
   // Zooms in on the differences and the selected pair.
-  approach() {
+  zoomToDifference() {
     this.zoom = 1;
     this.pan = [0, 0];
-    const apart = this.difference(),
+    const difference = this.difference(),
       own = this.positions("submission"),
       near = new Set();
-    if (apart && apart.most > 0)
-      apart.list.forEach((d, k) => {
-        if (Math.hypot(...d) > apart.most * 1e-3) near.add(k);
+    if (difference && difference.most > 0)
+      difference.list.forEach((d, k) => {
+        if (Math.hypot(...d) > difference.most * 1e-3) near.add(k);
       });
     if (this.selected && this.selected.pair) {
-      const { kind, first, second } = parse(this.selected.pair);
+      const { kind, first, second } = parsePair(this.selected.pair);
       for (const k of [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])])
         near.add(k);
     }
     let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
     for (const k of own ? near : []) {
-      for (const at of apart ? [own, apart.base] : [own]) {
+      for (const at of difference ? [own, difference.base] : [own]) {
         const [x, y, r] = [at[2 * k], at[2 * k + 1], 2.5 * this.data.radii[k] + 0.02 * this.extent];
-        if (finite(x, y))
+        if (areFinite(x, y))
           [x0, y0, x1, y1] = [Math.min(x0, x - r), Math.min(y0, y - r), Math.max(x1, x + r), Math.max(y1, y + r)];
       }
     }
@@ -203,7 +203,7 @@ class Motion {
     const [x0, y0, x1, y1] = this.box;
     return this.zoom * Math.min(this.view[1] / (x1 - x0), this.canvas.height / (y1 - y0));
   }
-  to(x, y) {
+  toPixels(x, y) {
     const [x0, y0, x1, y1] = this.box;
     const scale = this.scale();
     return [

@@ -1,34 +1,36 @@
 // Texts, packed numbers and SVG drawings: the functions that are independent of a case.
 const SVG = "http://www.w3.org/2000/svg";
 const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
-const finite = (...values) => values.every(Number.isFinite);
-const short = (value) => (value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString());
-// Formats two numbers in one notation, just long enough to show where they begin to differ; the second is marked from
+const areFinite = (...values) => values.every(Number.isFinite);
+const formatShort = (value) =>
+  value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString();
+// Formats two numbers in the same notation, just long enough to show where they begin to differ; the second is marked from
 // there on.
-function beside(one, other) {
-  const most = Math.max(Math.abs(one), Math.abs(other));
-  if (!finite(one, other) || most === 0) return [short(one), short(other)];
-  const power = (value) => Math.floor(Math.log10(value));
-  const top = power(most),
+function formatPair(one, other) {
+  const largest = Math.max(Math.abs(one), Math.abs(other));
+  if (!areFinite(one, other) || largest === 0) return [formatShort(one), formatShort(other)];
+  const exponentOf = (value) => Math.floor(Math.log10(value));
+  const exponent = exponentOf(largest),
     gap = Math.abs(one - other),
-    digits = Math.max(6, Math.min(17, gap > 0 ? top - power(gap) + 2 : 6));
-  const far = top < -4 || top > 8;
+    digits = Math.max(6, Math.min(17, gap > 0 ? exponent - exponentOf(gap) + 2 : 6));
+  const isScientific = exponent < -4 || exponent > 8;
   const [right, own] = [one, other].map(
     (value) =>
-      (far ? value / 10 ** top : value).toFixed(Math.max(0, Math.min(20, far ? digits - 1 : digits - 1 - top))) +
-      (far ? `e${top}` : ""),
+      (isScientific ? value / 10 ** exponent : value).toFixed(
+        Math.max(0, Math.min(20, isScientific ? digits - 1 : digits - 1 - exponent)),
+      ) + (isScientific ? `e${exponent}` : ""),
   );
   let place = 0;
   if (right.length === own.length) while (place < own.length && own[place] === right[place]) place += 1;
   return [right, right === own ? own : el("span", {}, own.slice(0, place), el("mark", {}, own.slice(place)))];
 }
-const hex = (value) => {
+const toHex = (value) => {
   const view = new DataView(new ArrayBuffer(8));
   view.setFloat64(0, value);
   return "0x" + view.getBigUint64(0).toString(16).padStart(16, "0");
 };
 
-const times = (count) => (count === 1 ? "once" : `${count} times`);
+const formatTimes = (count) => (count === 1 ? "once" : `${count} times`);
 const prefersReducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
 
 async function unpack(id) {
@@ -43,10 +45,10 @@ async function unpack(id) {
 function unround(buffer, { unit, exact }, n) {
   const size = 4 * n,
     bytes = new Uint8Array(buffer);
-  const seen = [],
-    now = new Float64Array(2 * n);
-  const kept = new DataView(buffer).getUint32(0, true);
-  let at = 8 + 8 * size * kept;
+  const positionsByRecord = [],
+    positions = new Float64Array(2 * n);
+  const exactCount = new DataView(buffer).getUint32(0, true);
+  let at = 8 + 8 * size * exactCount;
   while (at < bytes.length) {
     for (let k = 0; k < 2 * n; k++) {
       let value = 0,
@@ -57,29 +59,31 @@ function unround(buffer, { unit, exact }, n) {
         value += (byte & 127) * factor;
         factor *= 128;
       } while (byte > 127);
-      now[k] += value % 2 ? -(value + 1) / 2 : value / 2;
+      positions[k] += value % 2 ? -(value + 1) / 2 : value / 2;
     }
-    seen.push(now.slice());
+    positionsByRecord.push(positions.slice());
   }
-  const out = new Float64Array(seen.length * size).fill(NaN);
-  seen.forEach((positions, record) =>
-    positions.forEach((value, k) => {
+  const out = new Float64Array(positionsByRecord.length * size).fill(NaN);
+  positionsByRecord.forEach((recordPositions, record) =>
+    recordPositions.forEach((value, k) => {
       out[record * size + k] = Math.abs(value) < 2 ** 40 ? value * unit : NaN;
     }),
   );
-  exact.slice(0, kept).forEach((record, k) => out.set(new Float64Array(buffer, 8 + 8 * size * k, size), record * size));
+  exact
+    .slice(0, exactCount)
+    .forEach((record, k) => out.set(new Float64Array(buffer, 8 + 8 * size * k, size), record * size));
   return out;
 }
 
 // Parses a pair such as "pp:0,1".
-const parse = (pair) => {
+const parsePair = (pair) => {
   const [kind, rest] = pair.split(":");
   const [first, second] = rest.split(",").map(Number);
   return { kind, first, second };
 };
 const PAIRS = { pp: "particle", pe: "edge", ph: "half-plane" };
-const words = (pair) => {
-  const { kind, first, second } = parse(pair);
+const pairText = (pair) => {
+  const { kind, first, second } = parsePair(pair);
   return `particle ${first} - ${PAIRS[kind]} ${second}`;
 };
 
@@ -160,9 +164,9 @@ class Sketch {
   }
 }
 
-const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
-const same = (one, other) => one.length === other.length && one.every((value, k) => Object.is(value, other[k]));
-function table(head, rows, caption) {
+const quoteForShell = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+const areIdentical = (one, other) => one.length === other.length && one.every((value, k) => Object.is(value, other[k]));
+function createTable(head, rows, caption) {
   return el(
     "table",
     {},
@@ -196,7 +200,7 @@ function copy(text, button) {
       }, 1200);
     }
   };
-  const by_hand = () => {
+  const copyFromTextArea = () => {
     const area = el("textarea", { class: "offscreen" });
     area.value = text;
     document.body.append(area);
@@ -205,10 +209,10 @@ function copy(text, button) {
     area.remove();
     done();
   };
-  if (navigator.clipboard && isSecureContext) navigator.clipboard.writeText(text).then(done, by_hand);
-  else by_hand();
+  if (navigator.clipboard && isSecureContext) navigator.clipboard.writeText(text).then(done, copyFromTextArea);
+  else copyFromTextArea();
 }
-function arrow(context, from, to) {
+function drawArrow(context, from, to) {
   const angle = Math.atan2(to[1] - from[1], to[0] - from[0]);
   context.beginPath();
   context.moveTo(...from);
@@ -221,10 +225,10 @@ function arrow(context, from, to) {
   context.fill();
 }
 // Returns the convex hull (Andrew's monotone chain).
-function hull(points) {
+function convexHull(points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   if (sorted.length < 3) return sorted;
-  const half = (list) => {
+  const halfHull = (list) => {
     const chain = [];
     for (const p of list) {
       while (chain.length > 1) {
@@ -236,5 +240,5 @@ function hull(points) {
     }
     return chain.slice(0, -1);
   };
-  return [...half(sorted), ...half(sorted.reverse())];
+  return [...halfHull(sorted), ...halfHull(sorted.reverse())];
 }

@@ -21,9 +21,9 @@ class Viewer extends Words {
     this.beside = false;
     this.build();
     this.fit();
-    this.look();
-    this.approach();
-    this.look();
+    this.update();
+    this.zoomToDifference();
+    this.update();
   }
 
   build() {
@@ -44,7 +44,7 @@ class Viewer extends Words {
         type: "checkbox",
         onchange: (event) => {
           this.show[name] = event.target.checked;
-          this.look();
+          this.update();
         },
       });
       box.checked = this.show[name];
@@ -60,14 +60,14 @@ class Viewer extends Words {
       "aria-describedby": `say-${this.key}`,
     });
     this.view = [0, this.canvas.width];
-    this.play = button("Play", "Play or pause", () => this.toggle(), "space");
+    this.play = button("Play", "Play or pause", () => this.togglePlay(), "space");
     this.stepBox = el("input", {
       type: "number",
       min: data.first,
       max: data.last,
       class: "stepbox",
       "aria-label": "Step",
-      onchange: (event) => this.go(Number(event.target.value)),
+      onchange: (event) => this.goToStep(Number(event.target.value)),
     });
     // Keys and screen readers use the slider; pointers use the strip above it.
     this.slider = el("input", {
@@ -75,7 +75,7 @@ class Viewer extends Words {
       min: data.first,
       max: data.last,
       "aria-label": "Step",
-      oninput: (event) => this.go(Number(event.target.value)),
+      oninput: (event) => this.goToStep(Number(event.target.value)),
     });
     this.inside = el("input", {
       type: "range",
@@ -86,7 +86,7 @@ class Viewer extends Words {
       class: "wide",
       oninput: (event) => {
         this.t = Number(event.target.value);
-        this.look();
+        this.update();
       },
     });
     this.insideText = el("output", {}, "");
@@ -94,17 +94,17 @@ class Viewer extends Words {
       "aria-label": "Which motion within the step",
       onchange: (event) => {
         this.pass = Number(event.target.value);
-        this.look();
+        this.update();
       },
     });
     this.midBox = el("input", {
       type: "checkbox",
       onchange: (event) => {
         this.mid = event.target.checked;
-        this.look();
+        this.update();
       },
     });
-    this.mid = this.midIsWrong();
+    this.mid = this.isMidWrong();
     this.factor = el("input", {
       type: "range",
       min: 0,
@@ -113,7 +113,7 @@ class Viewer extends Words {
       "aria-label": "Magnification of differences, power of ten",
       oninput: (event) => {
         this.magnify = 10 ** Number(event.target.value);
-        this.look();
+        this.update();
       },
     });
     this.factorText = el("output", {}, "");
@@ -123,7 +123,7 @@ class Viewer extends Words {
     this.ticks.setAttribute("preserveAspectRatio", "none");
     this.ticks.setAttribute("aria-hidden", "true");
     this.ticks.classList.add("ticks");
-    const under = (event) => {
+    const stepUnder = (event) => {
       const box = this.strip.getBoundingClientRect();
       return [
         1 + Math.floor(((event.clientX - box.left) / box.width) * data.steps),
@@ -136,10 +136,10 @@ class Viewer extends Words {
       height: 34,
       class: "strip",
       role: "img",
-      "aria-label": this.stripWords(),
+      "aria-label": this.stripText(),
       onpointerdown: (event) => {
         this.strip.setPointerCapture(event.pointerId);
-        this.go(under(event)[0]);
+        this.goToStep(stepUnder(event)[0]);
         this.slider.focus();
         event.preventDefault();
       },
@@ -147,12 +147,12 @@ class Viewer extends Words {
         this.preview.hidden = true;
       },
       onpointermove: (event) => {
-        const [step, x, width] = under(event);
-        if (event.buttons) this.go(step);
+        const [step, x, width] = stepUnder(event);
+        if (event.buttons) this.goToStep(step);
         this.preview.hidden = event.buttons || step < data.first || step > data.last || event.pointerType === "touch";
         if (this.preview.hidden) return;
         this.preview.style.left = `${Math.max(0, Math.min(width - 192, x - 96))}px`;
-        this.peek(step);
+        this.drawPreview(step);
       },
     });
     this.preview = el(
@@ -161,7 +161,12 @@ class Viewer extends Words {
       el("canvas", { width: 384, height: 216 }),
       el("div"),
     );
-    this.besideButton = button("Side by side", "Expected and actual motion side by side", () => this.besides(), "s");
+    this.besideButton = button(
+      "Side by side",
+      "Expected and actual motion side by side",
+      () => this.toggleSideBySide(),
+      "s",
+    );
     this.keys = el(
       "details",
       { class: "table help" },
@@ -181,7 +186,7 @@ class Viewer extends Words {
           ["+ -", "zoom"],
           ["s", "side by side"],
           ["?", "this list"],
-        ].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((one) => [el("kbd", {}, one), " "]), text)),
+        ].map(([key, text]) => el("span", {}, ...key.split(" ").flatMap((name) => [el("kbd", {}, name), " "]), text)),
       ),
     );
     this.say = el("p", { class: "say", id: `say-${this.key}`, "aria-live": "polite" });
@@ -190,7 +195,7 @@ class Viewer extends Words {
     this.matrix = el("div", { class: "matrix" });
     this.table = el(
       "details",
-      { class: "table", ontoggle: () => this.look() },
+      { class: "table", ontoggle: () => this.update() },
       el("summary", {}, "The picture as a table"),
     );
     this.tableBody = el("div");
@@ -202,28 +207,28 @@ class Viewer extends Words {
       ? el(
           "p",
           { class: "hint" },
-          `This motion is too large for this page: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
+          `This motion is too large for this page: positions are rounded to ${formatShort(rounded.unit)}, and velocities are left out. `,
           kept.length ? `The records around these steps are exact: ${kept.join(", ")}.` : "",
         )
       : "";
     this.root = el(
       "div",
-      { class: "viewer", onkeydown: (event) => this.key_down(event) },
+      { class: "viewer", onkeydown: (event) => this.handleKey(event) },
       this.canvas,
       el("div", { class: "timeline" }, this.preview, this.strip, this.slider),
       this.say,
-      this.stripKey(),
+      this.stripLegend(),
       el(
         "div",
         { class: "bar" },
         el(
           "span",
           { class: "group" },
-          button("\u00ab wrong", "Previous wrong step", () => this.finding(-1), "p"),
-          button("\u2039", "One step back", () => this.go(this.step - 1), "left"),
+          button("\u00ab wrong", "Previous wrong step", () => this.goToWrongStep(-1), "p"),
+          button("\u2039", "One step back", () => this.goToStep(this.step - 1), "left"),
           this.play,
-          button("\u203a", "One step on", () => this.go(this.step + 1), "right"),
-          button("wrong \u00bb", "Next wrong step", () => this.finding(1), "n"),
+          button("\u203a", "One step on", () => this.goToStep(this.step + 1), "right"),
+          button("wrong \u00bb", "Next wrong step", () => this.goToWrongStep(1), "n"),
         ),
         el("label", {}, "step ", this.stepBox, ` of ${data.steps}`),
         this.speeds(),
@@ -235,13 +240,13 @@ class Viewer extends Words {
                 "Near",
                 "Near the difference",
                 () => {
-                  this.approach();
-                  this.look();
+                  this.zoomToDifference();
+                  this.update();
                 },
                 "z",
               )
             : "",
-          button("All", "Show everything", () => this.whole(), "0"),
+          button("All", "Show everything", () => this.showEverything(), "0"),
           data.full ? this.besideButton : "",
         ),
         el(
@@ -254,8 +259,10 @@ class Viewer extends Words {
             button("PNG", "Save this picture", () => this.picture()),
             button("SVG", "Save this picture as a drawing", () => this.drawing()),
             button("Clip", "Record a video of the steps", () => this.clip()),
-            // A page within a frame has no address.
-            location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()),
+            // A page within a frame has no URL of its own.
+            location.protocol === "about:"
+              ? ""
+              : button("Link", "Copy a link to this step and time", () => this.link()),
           ),
         ),
       ),
@@ -303,7 +310,7 @@ class Viewer extends Words {
         if (!event.ctrlKey && !event.shiftKey && document.activeElement !== this.canvas) return;
         event.preventDefault();
         this.zoom = Math.max(0.2, Math.min(1e6, this.zoom * Math.exp(-event.deltaY / 400)));
-        this.look();
+        this.update();
       },
       { passive: false },
     );
@@ -319,7 +326,7 @@ class Viewer extends Words {
       if (Math.hypot(...move) > 4) held[4] = true;
       if (held[4]) {
         this.pan = [held[2] + move[0], held[3] + move[1]];
-        this.look();
+        this.update();
       }
     });
     this.canvas.addEventListener("pointerup", (event) => {
@@ -341,21 +348,21 @@ class Viewer extends Words {
     }
     return select;
   }
-  besides() {
+  toggleSideBySide() {
     this.beside = this.data.full && !this.beside;
     this.besideButton.setAttribute("aria-pressed", this.beside);
-    this.approach();
-    this.look();
+    this.zoomToDifference();
+    this.update();
   }
   count(letter) {
-    return [...this.data.strip].filter((one) => one === letter).length;
+    return [...this.data.strip].filter((step) => step === letter).length;
   }
-  stripWords() {
+  stripText() {
     const [right, wrong, after] = ["r", "w", "i"].map((letter) => this.count(letter));
     return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but starting from a wrong state, ${this.data.steps - right - wrong - after} not judged`;
   }
   // The legend of the strip's colors.
-  stripKey() {
+  stripLegend() {
     const names = [
       ["r", "right"],
       ["w", this.count("w") === 1 ? "wrong by itself" : "wrong by themselves"],
@@ -391,34 +398,34 @@ class Viewer extends Words {
     const parts = [];
     recorder.ondataavailable = (event) => parts.push(event.data);
     recorder.onstop = () => this.file(new Blob(parts, { type: recorder.mimeType }), "motion.webm");
-    const began = Math.max(this.data.first, this.step - 30),
-      until = Math.min(this.data.last, this.step + 30);
-    let step = began;
+    const begin = Math.max(this.data.first, this.step - 30),
+      end = Math.min(this.data.last, this.step + 30);
+    let step = begin;
     recorder.start();
-    const turn = () => {
-      this.go(step);
-      if (step++ < until) setTimeout(turn, 1000 / 15);
+    const recordStep = () => {
+      this.goToStep(step);
+      if (step++ < end) setTimeout(recordStep, 1000 / 15);
       else recorder.stop();
     };
-    turn();
+    recordStep();
   }
   link() {
     const hash = new URLSearchParams({ scene: this.name, step: this.step, t: this.t.toFixed(3) });
     if (this.selected && this.selected.pair) hash.set("pair", this.selected.pair);
     history.replaceState(null, "", "#" + hash);
     copy(location.href, null);
-    this.say.textContent = "The address of this page now leads to this moment.";
+    this.say.textContent = "The URL of this page now leads to this step and time.";
   }
 }
 
 const viewers = new Map(),
   opening = new Map();
-function open(article) {
+function openViewer(article) {
   const key = article.dataset.case;
-  if (!opening.has(key)) opening.set(key, make(article, key));
+  if (!opening.has(key)) opening.set(key, createViewer(article, key));
   return opening.get(key);
 }
-async function make(article, key) {
+async function createViewer(article, key) {
   const block = document.getElementById(`case-${key}`);
   if (!block) return null;
   const data = JSON.parse(block.textContent);
@@ -450,7 +457,7 @@ document.addEventListener("moment", ({ detail: { key, step } }) => {
         const box = svg.getBoundingClientRect();
         const x = ((event.clientX - box.left) / box.width) * svg.viewBox.baseVal.width;
         const viewer = viewers.get(key);
-        if (viewer) viewer.go(1 + Math.round(((x - left) / (right - left)) * (steps - 1)));
+        if (viewer) viewer.goToStep(1 + Math.round(((x - left) / (right - left)) * (steps - 1)));
       });
     }
     const x = left + (steps > 1 ? (Math.max(1, step) - 1) / (steps - 1) : 0) * (right - left);
@@ -459,18 +466,18 @@ document.addEventListener("moment", ({ detail: { key, step } }) => {
   }
 });
 // Opens a card with its viewer.
-function unfold(article) {
+function unfoldCard(article) {
   const card = article.querySelector("details.scene");
   for (const folded of [card, article.closest("details.alike")]) if (folded) folded.open = true;
-  return article.querySelector(".stage") ? open(article) : null;
+  return article.querySelector(".stage") ? openViewer(article) : null;
 }
 // Shows the subject of a clicked finding or call.
-function show(article, row) {
+function addShowButton(article, row) {
   const act = async () => {
-    const viewer = await unfold(article);
+    const viewer = await unfoldCard(article);
     if (!viewer) return;
     viewer.selected = row.dataset.pair ? { pair: row.dataset.pair } : null;
-    viewer.go(Number(row.dataset.step));
+    viewer.goToStep(Number(row.dataset.step));
     viewer.root.scrollIntoView({ block: "start" });
     viewer.canvas.focus({ preventScroll: true });
   };
@@ -482,26 +489,28 @@ function show(article, row) {
   (row.cells ? row.cells[row.cells.length - 1] : row.firstElementChild).append(" ", button);
 }
 // Opens the card, or the scene and step, that the fragment of the URL names.
-async function visit(articles) {
+async function followFragment(articles) {
   const fragment = new URLSearchParams(location.hash.slice(1));
   const moment = articles.find((article) => article.dataset.scene === fragment.get("scene"));
-  const named = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
+  const target = moment || articles.find((article) => article.id && `#${article.id}` === location.hash);
   const first =
-    named ||
+    target ||
     articles.find((article) => article.querySelector("details.scene[open]")) ||
     articles.find((article) => article.querySelector(".stage"));
-  const viewer = first && (await unfold(first));
+  const viewer = first && (await unfoldCard(first));
   if (viewer && moment) {
-    if (fragment.has("step")) viewer.go(Number(fragment.get("step")));
+    if (fragment.has("step")) viewer.goToStep(Number(fragment.get("step")));
     if (fragment.has("t")) viewer.t = Math.max(0, Math.min(1, Number(fragment.get("t")) || 0));
     if (/^p[peh]:\d+,\d+$/.test(fragment.get("pair") || "")) viewer.selected = { pair: fragment.get("pair") };
-    viewer.look();
+    viewer.update();
   }
-  if (named) named.scrollIntoView();
+  if (target) target.scrollIntoView();
 }
 // Searches scenes by their names and their text.
-function search(articles) {
-  const scenes = articles.filter((one) => one.querySelector("details.scene") && !one.id.startsWith("small-"));
+function addSceneFilter(articles) {
+  const scenes = articles.filter(
+    (article) => article.querySelector("details.scene") && !article.id.startsWith("small-"),
+  );
   if (scenes.length < 8) return;
   const count = el("output", { class: "hint" });
   const filterInput = el("input", {
@@ -520,28 +529,28 @@ function search(articles) {
 }
 async function start() {
   const articles = [...document.querySelectorAll("article.case")];
-  search(articles);
+  addSceneFilter(articles);
   for (const article of articles) {
     if (!article.querySelector(".stage")) continue;
     const card = article.querySelector("details.scene");
     if (card)
       card.addEventListener("toggle", () => {
-        if (card.open) open(article);
+        if (card.open) openViewer(article);
       });
-    for (const row of article.querySelectorAll("[data-step]")) show(article, row);
+    for (const row of article.querySelectorAll("[data-step]")) addShowButton(article, row);
   }
-  await visit(articles);
-  addEventListener("hashchange", () => visit(articles));
+  await followFragment(articles);
+  addEventListener("hashchange", () => followFragment(articles));
   document.documentElement.dataset.ready = "yes";
 }
 document.addEventListener("keydown", (event) => {
   if (event.target === document.body) {
     const viewer = [...viewers.values()].find(Boolean);
-    if (viewer) viewer.key_down(event);
+    if (viewer) viewer.handleKey(event);
   }
 });
 // Letters depend on the width of the picture.
-const redraw = () => viewers.forEach((viewer) => viewer && viewer.look());
+const redraw = () => viewers.forEach((viewer) => viewer && viewer.update());
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 addEventListener("resize", redraw);
 start();
