@@ -15,7 +15,7 @@ function engine(module, host) {
   return (request, ...blobs) => {
     const parts = [new TextEncoder().encode(JSON.stringify(request)), ...blobs];
     const input = bytes(
-      exports.room(parts.reduce((sum, part) => sum + part.length + 4, 0)),
+      exports.reserve_request(parts.reduce((sum, part) => sum + part.length + 4, 0)),
       parts.reduce((sum, part) => sum + part.length + 4, 0),
     );
     let offset = 0;
@@ -26,7 +26,7 @@ function engine(module, host) {
     }
     let answerAddress;
     try {
-      answerAddress = exports.answer();
+      answerAddress = exports.answer_request();
     } catch (error) {
       throw new Error(
         panicMessage

@@ -115,7 +115,7 @@ function renderFields() {
 // Draws the pair at the start (lines) and at the end (dashes), with arrows between.
 function drawPair() {
   const { kind, points, radii, plane } = pair.now;
-  const all = points.flatMap(([x, y, dx, dy], point) => {
+  const corners = points.flatMap(([x, y, dx, dy], point) => {
     const r = kind === "pe" && point > 0 ? radii[1] : radii[Math.min(point, radii.length - 1)];
     return [
       [x - r, y - r],
@@ -124,9 +124,9 @@ function drawPair() {
       [x + dx + r, y + dy + r],
     ];
   });
-  if (plane) all.push([plane[0], plane[1]]);
-  const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))),
-    high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
+  if (plane) corners.push([plane[0], plane[1]]);
+  const low = [0, 1].map((axis) => Math.min(...corners.map((corner) => corner[axis]))),
+    high = [0, 1].map((axis) => Math.max(...corners.map((corner) => corner[axis])));
   // The view does not move while the reader holds a point.
   pair.view = pair.held
     ? pair.view

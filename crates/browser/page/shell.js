@@ -42,12 +42,12 @@ class Oracle {
     const url = URL.createObjectURL(new Blob([$("worker").textContent], { type: "text/javascript" }));
     this.#worker = new Worker(url);
     this.#worker.onmessage = ({ data: { id, value, parts, error, progress } }) => {
-      const one = this.#waiting.get(id);
-      if (!one) return;
-      if (progress) return one.progress(...progress);
+      const pending = this.#waiting.get(id);
+      if (!pending) return;
+      if (progress) return pending.progress(...progress);
       this.#waiting.delete(id);
-      if (error) one.reject(new Error(error));
-      else one.resolve({ value, parts });
+      if (error) pending.reject(new Error(error));
+      else pending.resolve({ value, parts });
     };
     this.#worker.onerror = (event) => {
       for (const { reject } of this.#waiting.values())

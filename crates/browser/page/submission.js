@@ -19,9 +19,9 @@ async function collectFiles(entry, handle, path, found) {
   } else if (entry?.isDirectory) {
     const reader = entry.createReader();
     for (;;) {
-      const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
-      if (!some.length) break;
-      for (const inner of some)
+      const batch = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+      if (!batch.length) break;
+      for (const inner of batch)
         await collectFiles(inner, null, `${path}${inner.name}${inner.isDirectory ? "/" : ""}`, found);
     }
   } else if (entry) {

@@ -33,7 +33,7 @@ thread_local! {
 
 /// Reserves memory for the bytes of a request. Returns its address.
 #[unsafe(no_mangle)]
-extern "C" fn room(length: usize) -> *mut u8 {
+extern "C" fn reserve_request(length: usize) -> *mut u8 {
     MESSAGE.with_borrow_mut(|message| {
         message.clear();
         message.resize(length, 0);
@@ -43,7 +43,7 @@ extern "C" fn room(length: usize) -> *mut u8 {
 
 /// Answers the request. Returns the address of the answer.
 #[unsafe(no_mangle)]
-extern "C" fn answer() -> *const u8 {
+extern "C" fn answer_request() -> *const u8 {
     static HOOK: Once = Once::new();
     HOOK.call_once(|| {
         panic::set_hook(Box::new(|fault| {
