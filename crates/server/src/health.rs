@@ -15,7 +15,7 @@ const MAX_FAULTS: i64 = 3;
 const MAX_PAUSE: Duration = Duration::from_secs(60);
 
 /// Returns the number of milliseconds for which a worker counts as alive after its last report.
-pub fn recency_millis(policy: &QueuePolicy) -> i64 {
+pub fn worker_timeout_millis(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
 
@@ -60,7 +60,7 @@ pub async fn may_claim(
     policy: &QueuePolicy,
     claimant: Claimant<'_>,
 ) -> Result<bool, DbError> {
-    let recent = recency_millis(policy);
+    let recent = worker_timeout_millis(policy);
     if let Some(token_id) = claimant.token_id {
         // Requests of one token are handled one after another, so that the number of its jobs is exact.
         transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token_id]).await?;

@@ -43,15 +43,15 @@ impl LatePolicy {
         by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
-    /// Returns the delay of a submission that arrived at `came_at`. The student's own due date applies if there is one.
-    /// `None` means that the submission is in time, or that the assignment has no rule for late submissions.
-    pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
+    /// Returns the delay of a submission that arrived at `arrived_at`. The student's own due date applies if there is
+    /// one. `None` means that the submission is in time, or that the assignment has no rule for late submissions.
+    pub(crate) fn lateness(&self, own_due: Option<i64>, arrived_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // The delay is at max_days the allowed late days, even if an extension was withdrawn. Earlier late uploads keep
         // their deduction even if late uploads are no longer accepted.
         let max_days = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
-        let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
-        while self.days_after(due, days) < came_at {
+        let mut days = ((arrived_at - due) / DAY_MILLIS - 1).max(0);
+        while self.days_after(due, days) < arrived_at {
             days += 1;
         }
         let days = days.min(max_days);
@@ -68,8 +68,8 @@ impl Lateness {
         Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// Returns the points that are reduce after the deduction from the grader's points.
-    pub(crate) fn left_of(self, points: &str) -> String {
+    /// Returns the points that are left after the deduction from the grader's points.
+    pub(crate) fn points_left(self, points: &str) -> String {
         let reduce = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), reduce)
     }
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(closed.lateness(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
         let never = LatePolicy { late_percent: 0, ..closed };
         assert_eq!(never.lateness(None, due + 1), None, "where nothing is said of late work, nothing is late");
-        assert_eq!(Lateness { days: 1, percent: 10 }.left_of("85.5"), "76.95");
+        assert_eq!(Lateness { days: 1, percent: 10 }.points_left("85.5"), "76.95");
     }
 
     #[test]
@@ -103,9 +103,9 @@ mod tests {
         let due = crate::calendar::parse("2026-10-24T23:59+02:00").expect("a moment");
         let zone = Some(Tz::Europe__Berlin);
         let policy = LatePolicy { due_at: Some(due), late_days: 2, late_percent: 10, time_zone: zone };
-        let days = |came_at: &str| {
-            let came_at = crate::calendar::parse(came_at).expect("a moment");
-            policy.lateness(None, came_at).map(|late| late.days)
+        let days = |arrived_at: &str| {
+            let arrived_at = crate::calendar::parse(arrived_at).expect("a moment");
+            policy.lateness(None, arrived_at).map(|late| late.days)
         };
         assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
         assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));

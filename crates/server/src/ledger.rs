@@ -3,7 +3,7 @@ use crate::{
     db::{Database, DbError, Transaction, read_row},
     health,
     lti::score,
-    queue::{self, BuriedJob, Completion, Failure, Lease, QueuePolicy},
+    queue::{self, Completion, Failure, GivenUpJob, Lease, QueuePolicy},
     task::{JUDGE_ERROR, Outcome, round_points},
     values,
 };
@@ -46,7 +46,7 @@ pub async fn fail(
         return Ok(failure);
     }
     let row = find_job(transaction, lease.job).await?;
-    if failure == Failure::Buried {
+    if failure == Failure::GivenUp {
         fail_job(transaction, lease.job, lease.attempt, fault).await?;
     } else {
         log_event(transaction, &row, "failed try", fault).await?;
@@ -65,7 +65,7 @@ pub async fn fail(
 pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
     let tick = queue::tick(&mut transaction, policy).await?;
-    bury_all(&mut transaction, &tick.buried).await?;
+    record_given_up(&mut transaction, &tick.given_up).await?;
     transaction.commit().await?;
     if tick.outage {
         tracing::warn!("the queue was not served for a while, so all leases begin again");
@@ -73,7 +73,7 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     if tick.retried > 0 {
         tracing::warn!(jobs = tick.retried, "jobs of silent workers wait again");
     }
-    for job in &tick.buried {
+    for job in &tick.given_up {
         tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
     }
     Ok(())
@@ -105,7 +105,7 @@ async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobDetails,
     let row = &transaction.one(statement, values![job]).await?;
     let seconds = row.int("took")? / 1000;
     Ok(read_row!(row => JobDetails {
-        submission, regrade_id = "campaign", assignment, course, worker, asked_by, task = "payload"; job, seconds
+        submission, assignment, course, worker, asked_by, regrade_id = "campaign", task = "payload"; job, seconds
     }))
 }
 
@@ -131,7 +131,7 @@ async fn log_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> R
     Ok(())
 }
 
-async fn bury_all(transaction: &mut Transaction, jobs: &[BuriedJob]) -> Result<(), DbError> {
+async fn record_given_up(transaction: &mut Transaction, jobs: &[GivenUpJob]) -> Result<(), DbError> {
     for job in jobs {
         fail_job(transaction, job.job, job.attempt, &job.fault).await?;
     }

@@ -4,7 +4,7 @@ use crate::{
     db::{Database, DbError},
     health,
     instruments::Metrics,
-    queue::{Lane, QueuePolicy},
+    queue::{JobKind, QueuePolicy},
     values,
 };
 use std::time::{Duration, Instant};
@@ -50,12 +50,12 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
     }
     metrics.events.push(("graded".to_owned(), graded));
     metrics.jobs.push(("done".to_owned(), graded));
-    for (lane, counts) in [(Lane::Grading, &mut metrics.jobs), (Lane::Passback, &mut metrics.scores)] {
+    for (kind, counts) in [(JobKind::Grading, &mut metrics.jobs), (JobKind::Passback, &mut metrics.scores)] {
         let statement = "SELECT (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting') AS waiting,
             (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,
             (SELECT count(*) FROM job WHERE lane = ? AND state = 'buried' AND replaced = 0) AS buried,
             (SELECT count(*) FROM job WHERE lane = ? AND state = 'cancelled') AS cancelled";
-        let row = transaction.one(statement, values![lane.name(), lane.name(), lane.name(), lane.name()]).await?;
+        let row = transaction.one(statement, values![kind.name(), kind.name(), kind.name(), kind.name()]).await?;
         for state in ["waiting", "running", "buried", "cancelled"] {
             counts.push((state.to_owned(), row.int(state)?));
         }
@@ -71,7 +71,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
         FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";
     let row = transaction.one(statement, values![]).await?;
     metrics.stored_bytes = [row.int("bytes")?, row.int("most")?];
-    let recent = health::recency_millis(policy);
+    let recent = health::worker_timeout_millis(policy);
     let statement =
         "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
            count(CASE WHEN aside_since IS NULL AND EXISTS (SELECT 1 FROM job

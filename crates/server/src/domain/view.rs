@@ -4,7 +4,7 @@ use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
     late_policy::Lateness,
-    queue::{self, Lane, Progress},
+    queue::{self, JobKind, Progress},
     store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -390,7 +390,7 @@ impl Submission {
     pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let points = grade.outcome.points.take();
-        let points = points.map(|points| self.late.map_or(points.clone(), |late| late.left_of(&points)));
+        let points = points.map(|points| self.late.map_or(points.clone(), |late| late.points_left(&points)));
         grade.outcome.points = match &mut self.mark {
             Some(mark) => {
                 mark.grader_points = points;
@@ -442,9 +442,9 @@ pub(super) async fn submission(
     let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job.filter(|_| submission.state == "running") {
-        submission.expected_seconds = queue::find_remaining_time(transaction, Lane::Grading, job).await?;
+        submission.expected_seconds = queue::find_time_left(transaction, JobKind::Grading, job).await?;
     } else if let Some(job) = submission.job
-        && let Some(place) = queue::find_queue_position(transaction, &app.0.policy, Lane::Grading, job).await?
+        && let Some(place) = queue::find_queue_position(transaction, &app.0.policy, JobKind::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
         submission.lacks_worker = !place.is_served;
@@ -573,7 +573,7 @@ pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Qu
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'running') AS running,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'buried' AND replaced = 0) AS buried";
     let counts = &transaction.one(statement, values![]).await?;
-    let recent = health::recency_millis(&app.0.policy);
+    let recent = health::worker_timeout_millis(&app.0.policy);
     let statement = "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
            (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000";

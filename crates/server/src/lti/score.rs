@@ -8,7 +8,7 @@ use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
     late_policy::Lateness,
-    queue::{self, Lane, NewJob, Turn},
+    queue::{self, JobKind, JobOwner, NewJob},
     task::round_points,
     values,
     visible_grade::VisibleGrade,
@@ -77,12 +77,12 @@ pub(crate) async fn queue_arrival_score(transaction: &mut Transaction, link: i64
 async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Result<usize, DbError> {
     for row in rows {
         let order = ScoreOrder { link: row.int("link")?, account: row.int("account")?, again };
-        let turn = Turn::Score(order.link, order.account);
-        if !again && queue::is_waiting(transaction, turn).await? {
+        let owner = JobOwner::Score(order.link, order.account);
+        if !again && queue::is_waiting(transaction, owner).await? {
             continue;
         }
         let payload = &serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
-        let job = NewJob { lane: Lane::Passback, submission: None, regrade_id: None, turn, payload };
+        let job = NewJob { kind: JobKind::Passback, submission: None, regrade_id: None, owner, payload };
         queue::enqueue(transaction, &job).await?;
     }
     Ok(rows.len())
@@ -180,7 +180,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
         let late = Lateness::from_row(row)?;
         let points = row
             .maybe_text("mark")?
-            .or_else(|| points.map(|points| late.map_or(points.clone(), |late| late.left_of(&points))));
+            .or_else(|| points.map(|points| late.map_or(points.clone(), |late| late.points_left(&points))));
         let number =
             |text: Option<String>| text.and_then(|text| text.parse().ok()).filter(|number: &f64| number.is_finite());
         if let (Some(points), Some(max_points)) = (number(points), number(max_points))

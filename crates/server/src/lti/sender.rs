@@ -7,7 +7,7 @@ use super::{
 use crate::{
     calendar,
     db::{Database, DbError},
-    queue::{self, Claim, Claimant, Completion, Failure, Lane, Notifier, QueuePolicy},
+    queue::{self, Claim, Claimant, Completion, Failure, JobKind, Notifier, QueuePolicy},
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -90,13 +90,13 @@ async fn take_job<F: Future<Output = Result<(), DbError>>>(
     tick: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
     // A server without platforms needs no write transactions here.
-    if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
+    if !queue::is_due(&mut database.read().await?, JobKind::Passback).await? {
         return Ok(None);
     }
     let permit = room.clone().acquire_owned().await.map_err(|error| DbError::Other(error.to_string()))?;
     tick().await?;
     let mut transaction = database.begin().await?;
-    let claim = queue::claim(&mut transaction, policy, Lane::Passback, CLAIMANT).await?;
+    let claim = queue::claim(&mut transaction, policy, JobKind::Passback, CLAIMANT).await?;
     transaction.commit().await?;
     Ok(claim.map(|claim| (claim, permit)))
 }
@@ -134,7 +134,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             let patient_policy = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
             let failure = queue::fail(&mut transaction, &patient_policy, &claim.lease, &text, least).await?;
             match (failure, serde_json::from_str::<ScoreOrder>(&claim.payload)) {
-                (Failure::Buried, _) => {
+                (Failure::GivenUp, _) => {
                     score::record_failure(&mut transaction, &claim.payload, &text).await?;
                 }
                 (Failure::Retried, Ok(order)) => score::store_fault(&mut transaction, order, &text).await?,

@@ -1,5 +1,5 @@
 //! Claims jobs for workers.
-use super::{Claim, Lane, Lease, QueuePolicy, millis};
+use super::{Claim, JobKind, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction, read_row},
     secret, values,
@@ -24,14 +24,14 @@ pub struct Claimant<'a> {
 pub async fn claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
-    lane: Lane,
+    kind: JobKind,
     claimant: Claimant<'_>,
 ) -> Result<Option<Claim>, DbError> {
     let Claimant { worker, token_id } = claimant;
     let statement = "SELECT id FROM job WHERE lane = ? AND state = 'waiting' AND run_after <= {now}
             AND (failed_by IS NULL OR failed_by <> ? OR run_after <= {now} - ?)
         ORDER BY rank, id LIMIT 1 {skip locked}";
-    let next = transaction.row(statement, values![lane.name(), worker, millis(policy.lease / 3)]).await?;
+    let next = transaction.row(statement, values![kind.name(), worker, millis(policy.lease / 3)]).await?;
     let Some(next) = next else { return Ok(None) };
     let job = next.int("id")?;
     let key = secret::random_hex();
@@ -50,9 +50,9 @@ pub async fn claim(
 /// # Errors
 ///
 /// Fails if the database cannot be read.
-pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
+pub async fn is_due(transaction: &mut Transaction, kind: JobKind) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
            (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})
         ) LIMIT 1";
-    Ok(transaction.row(statement, values![lane.name()]).await?.is_some())
+    Ok(transaction.row(statement, values![kind.name()]).await?.is_some())
 }

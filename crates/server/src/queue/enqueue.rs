@@ -1,12 +1,12 @@
 //! Puts jobs into the queue, with their ranks.
 //!
 //! A job's **rank** is a time by which jobs are ordered. The rank of a student's first waiting job is the present time.
-//! Each further job has a rank that is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do
-//! not delay another student's first upload. Jobs of a regrade get later ranks than uploads that arrive at the same
+//! Each further job has a rank that is later by [`JobOwner::Student`]'s spacing, so that twenty uploads of one student
+//! do not delay another student's first upload. Jobs of a regrade get later ranks than uploads that arrive at the same
 //! time; each is later than the one before. Ranks never change, so only a bounded number of other jobs can pass a
 //! waiting job. Therefore no aging is needed, and a job's position in the queue is the number of jobs with a smaller
 //! rank.
-use super::Lane;
+use super::JobKind;
 use crate::{
     db::{DbError, Transaction},
     values,
@@ -14,7 +14,7 @@ use crate::{
 
 /// The owner of a job. Owners take turns, so that no owner's jobs delay all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Turn {
+pub enum JobOwner {
     /// A student who uploaded a submission; the value is the account's ID.
     Student(i64),
     /// A regrade; the value is its ID.
@@ -23,7 +23,7 @@ pub enum Turn {
     Score(i64, i64),
 }
 
-impl Turn {
+impl JobOwner {
     /// Returns the delay between consecutive jobs of one owner, in milliseconds.
     pub(crate) fn spacing_millis(self) -> i64 {
         match self {
@@ -63,14 +63,14 @@ impl Turn {
 /// A job for the queue.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
-    /// The lane to which the job belongs.
-    pub lane: Lane,
+    /// The kind of the job.
+    pub kind: JobKind,
     /// The ID of the submission that is graded; `None` for other kinds of jobs.
     pub submission: Option<i64>,
     /// The ID of the regrade to which the job belongs, if any.
     pub regrade_id: Option<i64>,
     /// The owner of the job, which determines its rank.
-    pub turn: Turn,
+    pub owner: JobOwner,
     /// The task as text, in the form that the worker reads.
     pub payload: &'a str,
 }
@@ -81,13 +81,13 @@ pub struct NewJob<'a> {
 /// # Errors
 /// Fails if the database cannot be changed.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
-    let key = job.turn.key();
-    let rank = job.turn.next(transaction).await?;
+    let key = job.owner.key();
+    let rank = job.owner.next(transaction).await?;
     let statement =
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
         VALUES (?, ?, ?, ?, ?, 'waiting', ?, {now}, {now}) RETURNING id";
     let row = transaction
-        .one(statement, values![job.lane.name(), job.submission, job.regrade_id, key, job.payload, rank])
+        .one(statement, values![job.kind.name(), job.submission, job.regrade_id, key, job.payload, rank])
         .await?;
     row.int("id")
 }
@@ -98,8 +98,8 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
 /// # Errors
 ///
 /// Fails if the database cannot be read.
-pub async fn is_waiting(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
+pub async fn is_waiting(transaction: &mut Transaction, owner: JobOwner) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";
-    let row = transaction.row(statement, values![turn.key()]).await?;
+    let row = transaction.row(statement, values![owner.key()]).await?;
     Ok(row.is_some())
 }

@@ -25,7 +25,7 @@ pub enum Failure {
     /// The job waits for another try.
     Retried,
     /// The job has no tries left. The caller must write the failure in the same transaction.
-    Buried,
+    GivenUp,
     /// The lease was lost before the worker reported the failure.
     Late,
 }
@@ -158,7 +158,7 @@ async fn end_try(transaction: &mut Transaction, loss: FailedTry<'_>, is_last: bo
                lease_key = NULL, lease_until = NULL, last_fault = ?
             WHERE id = ?";
         transaction.execute(statement, values![failures, deaths, fault, job]).await?;
-        return Ok(Failure::Buried);
+        return Ok(Failure::GivenUp);
     }
     let statement = "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, run_after = {now} + ?,
            failed_by = worker, worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?

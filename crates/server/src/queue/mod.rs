@@ -5,9 +5,9 @@
 //! job, gives it back (**releases** it) or reports that it **failed**. Every claim has a number, the attempt, and a key
 //! that only the worker knows. Every message of a worker must contain both, so that a worker without a valid lease
 //! changes nothing. After a failure, a job waits for another try, longer each time. After [`QueuePolicy::max_failures`]
-//! failures it is **buried**: it is not tried again, and staff must check it. The loss of a worker does not count as a
-//! failure of the job. However, a job whose workers were lost very often is buried, too. The modules that use the queue
-//! define the jobs and their results.
+//! failures it is **given up**: it is not tried again, and staff must check it. The loss of a worker does not count as
+//! a failure of the job. However, a job whose workers were lost very often is given up, too. The modules that use the
+//! queue define the jobs and their results.
 
 mod claim;
 mod enqueue;
@@ -17,11 +17,11 @@ mod queue_position;
 mod tick;
 
 pub use claim::{Claimant, claim, is_due};
-pub use enqueue::{NewJob, Turn, enqueue, is_waiting};
+pub use enqueue::{JobOwner, NewJob, enqueue, is_waiting};
 pub use lease::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
-pub use queue_position::{QueuePosition, find_queue_position, find_remaining_time};
-pub use tick::{BuriedJob, Tick, tick};
+pub use queue_position::{QueuePosition, find_queue_position, find_time_left};
+pub use tick::{GivenUpJob, Tick, tick};
 
 use crate::secret;
 use serde::{Deserialize, Serialize};
@@ -30,15 +30,15 @@ use utoipa::ToSchema;
 
 /// The kind of work that a job needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Lane {
+pub enum JobKind {
     /// Grading, which workers do.
     Grading,
     /// Sending scores to learning platforms, which the service itself does.
     Passback,
 }
 
-impl Lane {
-    /// Returns the lane's name, as the table of jobs stores it.
+impl JobKind {
+    /// Returns the kind's name, as the table of jobs stores it (column `lane`).
     pub fn name(self) -> &'static str {
         match self {
             Self::Grading => "grading",
@@ -55,7 +55,7 @@ const MAX_PLATFORM_WAIT: Duration = Duration::from_secs(86_400);
 pub struct QueuePolicy {
     /// The maximum time between two reports of a worker.
     pub lease: Duration,
-    /// The number of failures after which a job is buried.
+    /// The number of failures after which a job is given up.
     pub max_failures: u32,
     /// The wait after the first failure. After each further failure the wait is four times as long.
     pub first_wait: Duration,

@@ -1,5 +1,5 @@
 //! The position of a job in the queue, and the time until it is expected to be graded.
-use super::{Lane, QueuePolicy, millis};
+use super::{JobKind, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction},
     values,
@@ -29,7 +29,7 @@ pub struct QueuePosition {
 pub async fn find_queue_position(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
-    lane: Lane,
+    kind: JobKind,
     job: i64,
 ) -> Result<Option<QueuePosition>, DbError> {
     let job_row = transaction.row("SELECT rank FROM job WHERE id = ? AND state = 'waiting'", values![job]).await?;
@@ -37,8 +37,8 @@ pub async fn find_queue_position(
     let rank = own.int("rank")?;
     let statement = "SELECT count(*) AS n FROM job
         WHERE lane = ? AND state = 'waiting' AND (rank < ? OR (rank = ? AND id < ?))";
-    let ahead = transaction.one(statement, values![lane.name(), rank, rank, job]).await?.int("n")?;
-    let usual_millis = usual_millis(transaction, lane).await?;
+    let ahead = transaction.one(statement, values![kind.name(), rank, rank, job]).await?.int("n")?;
+    let usual_millis = usual_millis(transaction, kind).await?;
     let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
         WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let slots =
@@ -51,12 +51,12 @@ pub async fn find_queue_position(
 }
 
 /// Returns the mean duration of recent jobs in milliseconds; `None` if there are none.
-async fn usual_millis(transaction: &mut Transaction, lane: Lane) -> Result<Option<i64>, DbError> {
+async fn usual_millis(transaction: &mut Transaction, kind: JobKind) -> Result<Option<i64>, DbError> {
     let statement = "SELECT CAST(avg(took) AS {int}) AS took FROM (
            SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
            ORDER BY finished_at DESC LIMIT ?
         ) AS recent";
-    transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")
+    transaction.one(statement, values![kind.name(), RECENT_JOBS]).await?.maybe_int("took")
 }
 
 /// Returns the number of seconds, at least one, that a running job will still need; `None` if it already takes longer
@@ -65,9 +65,9 @@ async fn usual_millis(transaction: &mut Transaction, lane: Lane) -> Result<Optio
 /// # Errors
 ///
 /// Fails if the database cannot be read.
-pub async fn find_remaining_time(transaction: &mut Transaction, lane: Lane, job: i64) -> Result<Option<u64>, DbError> {
+pub async fn find_time_left(transaction: &mut Transaction, kind: JobKind, job: i64) -> Result<Option<u64>, DbError> {
     let statement = "SELECT {now} - started_at AS took FROM job WHERE id = ? AND state = 'running'";
     let Some(row) = transaction.row(statement, values![job]).await? else { return Ok(None) };
-    let remaining = usual_millis(transaction, lane).await?.unwrap_or(0) - row.int("took")?;
+    let remaining = usual_millis(transaction, kind).await?.unwrap_or(0) - row.int("took")?;
     Ok(u64::try_from(remaining).ok().map(|remaining| (remaining / 1000).max(1)))
 }

@@ -19,14 +19,14 @@ pub struct Tick {
     pub retried: usize,
     /// The jobs that were given up, because their workers were lost too often. The caller must write the failures in
     /// the same transaction.
-    pub buried: Vec<BuriedJob>,
+    pub given_up: Vec<GivenUpJob>,
     /// Whether all leases started again, because no process had ticked for a while.
     pub outage: bool,
 }
 
 /// A job that was given up, because its workers were lost too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct BuriedJob {
+pub struct GivenUpJob {
     /// The job's ID.
     pub job: i64,
     /// The number of the job's last claim, from 1.
@@ -73,7 +73,7 @@ async fn give_up_workers(transaction: &mut Transaction, policy: &QueuePolicy, lo
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
         match give_up_worker(transaction, policy, &row, SILENT_WORKER).await? {
-            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT_WORKER.to_owned() }),
+            Failure::GivenUp => tick.given_up.push(GivenUpJob { job, attempt, worker, fault: SILENT_WORKER.into() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }
     }

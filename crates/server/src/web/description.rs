@@ -48,7 +48,7 @@ const MAX_INTEGER: i64 = (1 << 53) - 1;
 struct Base;
 
 /// Returns a description that contains only the answers that are sent before a handler runs.
-pub(super) fn base() -> OpenApi {
+pub(super) fn base_description() -> OpenApi {
     Base::openapi()
 }
 

@@ -17,7 +17,7 @@ use utoipa::IntoParams;
 pub(super) struct Body<T>(pub(super) T);
 
 /// The text in a request's body.
-pub(super) struct PlainBody(pub(super) String);
+pub(super) struct TextBody(pub(super) String);
 
 /// The fields of a form, from the body of a request, or from the query of a GET request.
 pub(super) struct Fields<T>(pub(super) T);
@@ -136,7 +136,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
     }
 }
 
-impl FromRequest<App> for PlainBody {
+impl FromRequest<App> for TextBody {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {

@@ -27,7 +27,7 @@ const MAX_GUEST_BODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     let (router, mut description) =
-        OpenApiRouter::with_openapi(description::base()).merge(api::routes()).split_for_parts();
+        OpenApiRouter::with_openapi(description::base_description()).merge(api::routes()).split_for_parts();
     description::complete(&mut description);
     (router, description)
 }

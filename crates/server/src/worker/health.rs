@@ -25,7 +25,7 @@ pub(super) struct Health<G> {
     pub(super) grader: G,
     /// The folder in which the folders for jobs and checks are created.
     pub(super) folder: PathBuf,
-    is_able: Arc<AtomicBool>,
+    can_grade: Arc<AtomicBool>,
     /// The lock of the slot that repeats checks until one succeeds. Other slots wait for this lock.
     retry_lock: Arc<Mutex<()>>,
     /// The lock that is held during a check.
@@ -42,7 +42,7 @@ impl<G: Grader> Health<G> {
         Self {
             grader,
             folder,
-            is_able: Arc::default(),
+            can_grade: Arc::default(),
             retry_lock: Arc::default(),
             check_lock: Arc::default(),
             fault: Arc::default(),
@@ -52,7 +52,7 @@ impl<G: Grader> Health<G> {
 
     /// Returns whether the last check succeeded, so that the worker may claim jobs.
     pub(super) fn is_proven(&self) -> bool {
-        self.is_able.load(Ordering::Acquire)
+        self.can_grade.load(Ordering::Acquire)
     }
 
     /// Returns the reason why the last check failed; `None` if it succeeded.
@@ -92,7 +92,7 @@ impl<G: Grader> Health<G> {
 
     /// Checks after a fault whether the worker can still grade. If it can, the job may be the cause of the fault.
     pub(super) async fn recheck_after_fault(&self, stop: &CancellationToken) -> bool {
-        self.is_able.store(false, Ordering::Release);
+        self.can_grade.store(false, Ordering::Release);
         self.check(stop).await
     }
 
@@ -111,7 +111,7 @@ impl<G: Grader> Health<G> {
         if let Err(error) = &result {
             tracing::error!(error, "this worker can't grade, and takes no jobs until it can");
         }
-        self.is_able.store(result.is_ok(), Ordering::Release);
+        self.can_grade.store(result.is_ok(), Ordering::Release);
         *self.fault.lock().unwrap_or_else(PoisonError::into_inner) = result.err();
         self.change.notify_one();
         self.is_proven()

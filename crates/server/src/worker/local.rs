@@ -3,7 +3,7 @@ use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
-    queue::{self, Claimant, Completion, Failure, Lane, Lease, Notifier, Progress, QueuePolicy, Subscription},
+    queue::{self, Claimant, Completion, Failure, JobKind, Lease, Notifier, Progress, QueuePolicy, Subscription},
     store::{Artifact, Digest, Store, StoreError},
     task::{Outcome, Task},
     visible_grade::{self, StoredTexts},
@@ -96,7 +96,7 @@ impl JobSource for LocalSource {
         loop {
             let mut transaction = self.database.begin().await?;
             let claim = if health::may_claim(&mut transaction, &self.policy, claimant).await? {
-                queue::claim(&mut transaction, &self.policy, Lane::Grading, claimant).await?
+                queue::claim(&mut transaction, &self.policy, JobKind::Grading, claimant).await?
             } else {
                 None
             };
@@ -161,7 +161,7 @@ impl JobSource for LocalSource {
         let mut transaction = self.database.begin().await?;
         let failure = ledger::fail(&mut transaction, &self.policy, lease, fault).await?;
         self.notifier.commit(transaction).await?;
-        if failure == Failure::Buried {
+        if failure == Failure::GivenUp {
             tracing::error!(job = lease.job, fault, "a job was tried too often");
         }
         Ok((failure != Failure::Late).into())

@@ -2,7 +2,7 @@
 use crate::support::engines::{Fresh, on_all_engines};
 use fosssim_server::{
     db::Database,
-    queue::{self, Claim, Claimant, Completion, Failure, Lane, Lease, NewJob, QueuePolicy, Turn},
+    queue::{self, Claim, Claimant, Completion, Failure, JobKind, JobOwner, Lease, NewJob, QueuePolicy},
     values,
 };
 use std::{collections::BTreeSet, time::Duration};
@@ -34,9 +34,9 @@ const POLICY: QueuePolicy = QueuePolicy {
 /// A duration that is longer than any job.
 const MOST: Duration = Duration::from_secs(3600);
 
-async fn enqueue(database: &Database, turn: Turn) -> i64 {
+async fn enqueue(database: &Database, owner: JobOwner) -> i64 {
     let mut transaction = database.begin().await.expect("a transaction");
-    let job = NewJob { lane: Lane::Grading, submission: None, regrade_id: None, turn, payload: "work" };
+    let job = NewJob { kind: JobKind::Grading, submission: None, regrade_id: None, owner, payload: "work" };
     let number = queue::enqueue(&mut transaction, &job).await.expect("a job");
     transaction.commit().await.expect("commit");
     number
@@ -48,7 +48,7 @@ async fn claim(database: &Database, worker: &str) -> Option<Claim> {
 
 async fn claim_by(database: &Database, claimant: Claimant<'_>) -> Option<Claim> {
     let mut transaction = database.begin().await.expect("a transaction");
-    let claim = queue::claim(&mut transaction, &POLICY, Lane::Grading, claimant).await.expect("a claim");
+    let claim = queue::claim(&mut transaction, &POLICY, JobKind::Grading, claimant).await.expect("a claim");
     transaction.commit().await.expect("commit");
     claim
 }
@@ -104,17 +104,17 @@ async fn a_job_comes_and_goes_with_its_upload(fresh: Fresh) {
     let database = &fresh.database;
     let mut transaction = database.begin().await.expect("a transaction");
     let job = NewJob {
-        lane: Lane::Grading,
+        kind: JobKind::Grading,
         submission: None,
         regrade_id: None,
-        turn: Turn::Student(1),
+        owner: JobOwner::Student(1),
         payload: "never seen",
     };
     queue::enqueue(&mut transaction, &job).await.expect("a job");
     // The upload fails here, so there is no commit.
     drop(transaction);
     assert_eq!(claim(database, "w").await, None);
-    let number = enqueue(database, Turn::Student(1)).await;
+    let number = enqueue(database, JobOwner::Student(1)).await;
     let claimed = claim(database, "w").await.expect("a job");
     assert_eq!((claimed.lease.job, claimed.lease.attempt, claimed.failures), (number, 1, 0));
     assert_eq!(claimed.payload, "work");
@@ -125,7 +125,7 @@ async fn a_job_comes_and_goes_with_its_upload(fresh: Fresh) {
 async fn every_job_is_claimed_once_by_many_workers(fresh: Fresh) {
     let mut expected = BTreeSet::new();
     for student in 0..40 {
-        expected.insert(enqueue(&fresh.database, Turn::Student(student)).await);
+        expected.insert(enqueue(&fresh.database, JobOwner::Student(student)).await);
     }
     let workers: Vec<_> = (0..8)
         .map(|worker| {
@@ -149,7 +149,7 @@ async fn every_job_is_claimed_once_by_many_workers(fresh: Fresh) {
 
 async fn a_late_worker_changes_nothing(fresh: Fresh) {
     let database = &fresh.database;
-    let job = enqueue(database, Turn::Student(1)).await;
+    let job = enqueue(database, JobOwner::Student(1)).await;
     // Both workers have one name, as after a restart.
     let frozen = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
@@ -172,12 +172,12 @@ async fn a_late_worker_changes_nothing(fresh: Fresh) {
 
 async fn an_answer_that_got_lost_may_be_repeated(fresh: Fresh) {
     let database = &fresh.database;
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     let claimed = claim(database, "w").await.expect("a job");
     assert_eq!(complete(database, &claimed.lease).await, Completion::Done);
     assert_eq!(complete(database, &claimed.lease).await, Completion::Repeated);
     // A finished result is accepted even if its lease has expired in the meantime.
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     let slow = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
     assert_eq!(complete(database, &slow.lease).await, Completion::Done);
@@ -186,7 +186,7 @@ async fn an_answer_that_got_lost_may_be_repeated(fresh: Fresh) {
 
 async fn a_foreign_key_or_number_changes_nothing(fresh: Fresh) {
     let database = &fresh.database;
-    let job = enqueue(database, Turn::Student(1)).await;
+    let job = enqueue(database, JobOwner::Student(1)).await;
     let held = claim(database, "w").await.expect("a job").lease;
     for forged in [
         Lease { key: "00000000000000000000000000000000".to_owned(), ..held.clone() },
@@ -204,7 +204,7 @@ async fn a_foreign_key_or_number_changes_nothing(fresh: Fresh) {
 
 async fn giving_back_costs_nothing(fresh: Fresh) {
     let database = &fresh.database;
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     for attempt in 1..=10 {
         let claimed = claim(database, "w").await.expect("the job, at once");
         assert_eq!((claimed.lease.attempt, claimed.failures), (attempt, 0));
@@ -217,7 +217,7 @@ async fn giving_back_costs_nothing(fresh: Fresh) {
 
 async fn a_poison_job_is_buried_when_it_has_killed_for_long(fresh: Fresh) {
     let database = &fresh.database;
-    let poison = enqueue(database, Turn::Student(1)).await;
+    let poison = enqueue(database, JobOwner::Student(1)).await;
     let mut deaths = 0;
     let buried = loop {
         let last = claim(database, "victim").await.expect("the job");
@@ -226,8 +226,8 @@ async fn a_poison_job_is_buried_when_it_has_killed_for_long(fresh: Fresh) {
         let_pass(database, POLICY.lease * 2).await;
         let tick = tick(database).await;
         let_pass(database, POLICY.longest_wait).await;
-        assert_eq!(tick.retried + tick.buried.len(), 1);
-        if let [buried] = tick.buried.as_slice() {
+        assert_eq!(tick.retried + tick.given_up.len(), 1);
+        if let [buried] = tick.given_up.as_slice() {
             assert_eq!(complete(database, &last.lease).await, Completion::Late);
             break buried.clone();
         }
@@ -240,7 +240,7 @@ async fn a_poison_job_is_buried_when_it_has_killed_for_long(fresh: Fresh) {
 
 async fn a_failed_job_waits_longer_each_time(fresh: Fresh) {
     let database = &fresh.database;
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     let first = claim(database, "w").await.expect("a job");
     assert_eq!(fail(database, &first.lease).await, Failure::Retried);
     assert_eq!(claim(database, "w").await, None, "it waits a second");
@@ -252,7 +252,7 @@ async fn a_failed_job_waits_longer_each_time(fresh: Fresh) {
     assert_eq!(claim(database, "w").await, None, "it waits four seconds");
     let_pass(database, Duration::from_secs(3)).await;
     let third = claim(database, "w").await.expect("a job");
-    assert_eq!(fail(database, &third.lease).await, Failure::Buried);
+    assert_eq!(fail(database, &third.lease).await, Failure::GivenUp);
     assert_eq!(fail(database, &third.lease).await, Failure::Late);
 }
 
@@ -267,7 +267,7 @@ async fn claim_all(database: &Database) -> Vec<i64> {
 
 async fn students_take_turns(fresh: Fresh) {
     let database = &fresh.database;
-    let (busy, calm, third) = (Turn::Student(1), Turn::Student(2), Turn::Student(3));
+    let (busy, calm, third) = (JobOwner::Student(1), JobOwner::Student(2), JobOwner::Student(3));
     let mut own = Vec::new();
     for _ in 0..3 {
         own.push(enqueue(database, busy).await);
@@ -284,12 +284,12 @@ async fn students_take_turns(fresh: Fresh) {
 
 async fn uploads_go_before_regrades_but_not_for_ever(fresh: Fresh) {
     let database = &fresh.database;
-    let regrades = [enqueue(database, Turn::Regrade(1)).await, enqueue(database, Turn::Regrade(1)).await];
-    let upload = enqueue(database, Turn::Student(1)).await;
+    let regrades = [enqueue(database, JobOwner::Regrade(1)).await, enqueue(database, JobOwner::Regrade(1)).await];
+    let upload = enqueue(database, JobOwner::Student(1)).await;
     assert_eq!(claim(database, "w").await.map(|claimed| claimed.lease.job), Some(upload));
     // After some time a regrade precedes uploads that have just arrived, but not all its jobs do so together.
     let_pass(database, Duration::from_secs(1801)).await;
-    let uploads = [enqueue(database, Turn::Student(2)).await, enqueue(database, Turn::Student(3)).await];
+    let uploads = [enqueue(database, JobOwner::Student(2)).await, enqueue(database, JobOwner::Student(3)).await];
     assert_eq!(claim_all(database).await, [regrades[0], uploads[0], uploads[1], regrades[1]]);
 }
 
@@ -297,12 +297,12 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
     let database = &fresh.database;
     let place = async |job| {
         let mut transaction = database.read().await.expect("a transaction");
-        queue::find_queue_position(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
+        queue::find_queue_position(&mut transaction, &POLICY, JobKind::Grading, job).await.expect("a place")
     };
-    let regrade = enqueue(database, Turn::Regrade(1)).await;
+    let regrade = enqueue(database, JobOwner::Regrade(1)).await;
     let mut jobs = Vec::new();
     for student in 0..4 {
-        jobs.push(enqueue(database, Turn::Student(student)).await);
+        jobs.push(enqueue(database, JobOwner::Student(student)).await);
     }
     let ahead = async |job| place(job).await.map(|place| place.ahead);
     assert_eq!((ahead(jobs[0]).await, ahead(jobs[3]).await, ahead(regrade).await), (Some(0), Some(3), Some(4)));
@@ -333,14 +333,14 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
     // While a job runs, the rest of its time is expected.
     let running = claim(database, "w").await.expect("a job").lease.job;
     let mut transaction = database.read().await.expect("a transaction");
-    let mut rest = async |job| queue::find_remaining_time(&mut transaction, Lane::Grading, job).await.expect("a time");
+    let mut rest = async |job| queue::find_time_left(&mut transaction, JobKind::Grading, job).await.expect("a time");
     assert!(rest(running).await.is_some_and(|seconds| (5..=10).contains(&seconds)));
     assert_eq!(rest(jobs[3]).await, None, "it does not run");
 }
 
 async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {
     let database = &fresh.database;
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     let held = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
     let mut transaction = database.begin().await.expect("a transaction");
@@ -358,7 +358,7 @@ async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {
 
 async fn a_lease_is_not_renewed_for_ever(fresh: Fresh) {
     let database = &fresh.database;
-    enqueue(database, Turn::Student(1)).await;
+    enqueue(database, JobOwner::Student(1)).await;
     let held = claim(database, "w").await.expect("a job");
     let renew = async |most| {
         let mut transaction = database.begin().await.expect("a transaction");
@@ -377,7 +377,8 @@ async fn a_lease_is_not_renewed_for_ever(fresh: Fresh) {
 
 async fn a_cancelled_job_is_gone_for_its_worker_too(fresh: Fresh) {
     let database = &fresh.database;
-    let (waiting, running) = (enqueue(database, Turn::Student(1)).await, enqueue(database, Turn::Student(2)).await);
+    let (waiting, running) =
+        (enqueue(database, JobOwner::Student(1)).await, enqueue(database, JobOwner::Student(2)).await);
     let cancel = async |job| {
         let mut transaction = database.begin().await.expect("a transaction");
         let statement = "UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL

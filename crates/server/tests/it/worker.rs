@@ -1,7 +1,7 @@
 //! Tests workers on a real queue, with graders for tests.
 use crate::support::engines::{Fresh, run};
 use fosssim_server::{
-    queue::{self, Lane, NewJob, Notifier, QueuePolicy, Turn},
+    queue::{self, JobKind, JobOwner, NewJob, Notifier, QueuePolicy},
     store::{Artifact, Store},
     task::{Form, Input, Outcome, Suite, Task},
     values,
@@ -61,10 +61,10 @@ async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
         };
         let payload = serde_json::to_string(&task).expect("JSON");
         let job = NewJob {
-            lane: Lane::Grading,
+            kind: JobKind::Grading,
             submission: None,
             regrade_id: None,
-            turn: Turn::Student(number),
+            owner: JobOwner::Student(number),
             payload: &payload,
         };
         queue::enqueue(&mut transaction, &job).await.expect("a job");

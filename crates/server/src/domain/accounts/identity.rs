@@ -91,7 +91,7 @@ pub(in crate::domain) enum SignInMethod {
     /// administrator.
     Own,
     /// The person signed in with a link from a course's staff, who may have used it themselves.
-    Vouched,
+    ByStaff,
     /// The person signed in with a token; the value is its ID. The session ends with the token.
     Token(i64),
 }
@@ -100,7 +100,7 @@ pub(in crate::domain) enum SignInMethod {
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
     /// Whether the session was begun with a link from a course's staff.
-    pub(in crate::domain) is_vouched: bool,
+    pub(in crate::domain) is_by_staff: bool,
     /// Whether the session was begun with a token.
     pub(in crate::domain) is_by_token: bool,
     /// Whether the session is young enough to create further ways to sign in.
@@ -116,7 +116,7 @@ pub(in crate::domain) fn digest(secret: &str) -> String {
 }
 
 /// Returns the owner of a token, and the token's ID.
-pub(in crate::domain) async fn account_of_token(
+pub(in crate::domain) async fn find_token_owner(
     transaction: &mut Transaction,
     token: &str,
 ) -> Result<(Account, i64), Problem> {
@@ -133,7 +133,7 @@ pub(in crate::domain) async fn account_of_token(
 }
 
 /// Returns the account of a session and the session's state. A session that a token began ends with the token.
-pub(in crate::domain) async fn account_of_session(
+pub(in crate::domain) async fn find_session_account(
     transaction: &mut Transaction,
     session: &str,
 ) -> Result<Option<(Account, SessionState)>, Problem> {
@@ -147,7 +147,7 @@ pub(in crate::domain) async fn account_of_session(
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
     let state = SessionState {
-        is_vouched: row.flag("vouched")?,
+        is_by_staff: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT_AGE,
         is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,
@@ -175,7 +175,7 @@ pub(in crate::domain) async fn begin_session(
     let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
         VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
     transaction
-        .execute(statement, values![secret.digest(), account, SESSION_LIFETIME, method == SignInMethod::Vouched, token])
+        .execute(statement, values![secret.digest(), account, SESSION_LIFETIME, method == SignInMethod::ByStaff, token])
         .await?;
     let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
         (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
@@ -197,11 +197,11 @@ pub(in crate::domain) async fn new_link(
     method: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    further_link(transaction, account, by, method).await
+    create_link(transaction, account, by, method).await
 }
 
 /// Creates another sign-in link. Earlier links stay valid.
-pub(in crate::domain) async fn further_link(
+pub(in crate::domain) async fn create_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
@@ -211,7 +211,7 @@ pub(in crate::domain) async fn further_link(
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
     transaction
-        .execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, method == SignInMethod::Vouched])
+        .execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, method == SignInMethod::ByStaff])
         .await?;
     Ok(secret)
 }
@@ -241,10 +241,10 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) =
-        (row.int("account")?, if row.flag("vouched")? { SignInMethod::Vouched } else { SignInMethod::Own });
+        (row.int("account")?, if row.flag("vouched")? { SignInMethod::ByStaff } else { SignInMethod::Own });
     // Staff may have connected the account with another person at the provider, in a session from a staff link.
     if way == SignInMethod::Own {
-        end_vouched_connections(transaction, account).await?;
+        end_staff_connections(transaction, account).await?;
     }
     let row = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
     Ok(row.map(|_| (account, way)))
@@ -256,7 +256,7 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
 }
 
 /// Disconnects the account from providers to which it was connected in a session from a staff link.
-async fn end_vouched_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+async fn end_staff_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     let statement = "DELETE FROM platform_account WHERE account = ? AND vouched = 1";
     transaction.execute(statement, values![account]).await.map(drop)
 }
@@ -266,16 +266,16 @@ pub(in crate::domain) async fn end_all_access(transaction: &mut Transaction, acc
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    end_vouched_connections(transaction, account).await?;
+    end_staff_connections(transaction, account).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
 /// Makes sure that only the person can use the account. Sessions and tokens from staff links end, because staff may
 /// have used these links.
-pub(in crate::domain) async fn end_vouched_access(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+pub(in crate::domain) async fn end_staff_access(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
-    end_vouched_connections(transaction, account).await?;
+    end_staff_connections(transaction, account).await?;
     transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
     let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
     transaction.execute(statement, values![account]).await?;
@@ -304,7 +304,7 @@ pub(in crate::domain) async fn new_token(
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
         VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
     let row = transaction
-        .one(statement, values![account, name, secret.digest(), by, method == SignInMethod::Vouched])
+        .one(statement, values![account, name, secret.digest(), by, method == SignInMethod::ByStaff])
         .await?;
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }

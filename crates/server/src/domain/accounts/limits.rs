@@ -65,7 +65,7 @@ impl TransferLimits {
     }
 
     /// Waits until this server handles no other upload of the account.
-    pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
+    pub(in crate::domain) async fn wait(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = find_shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN_TIMEOUT, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("your other uploads are still being stored"))
@@ -75,7 +75,7 @@ impl TransferLimits {
 /// Returns the value that all tasks of an account share, while at least one task uses it.
 fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
-    all.retain(|_, one| Arc::strong_count(one) > 1);
+    all.retain(|_, mutex| Arc::strong_count(mutex) > 1);
     all.entry(account).or_insert_with(|| Arc::new(new())).clone()
 }
 

@@ -112,7 +112,7 @@ async fn connect(
     person: &ProviderPerson,
     connecting: &Person,
 ) -> Result<i64, Problem> {
-    let (account, is_vouched) = (connecting.account.id, connecting.require_recent_browser()?.is_vouched);
+    let (account, is_by_staff) = (connecting.account.id, connecting.require_recent_browser()?.is_by_staff);
     let issuer = stored_issuer(provider);
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
     ensure(
@@ -120,12 +120,12 @@ async fn connect(
         Problem::conflict("your account is connected already", "disconnect it first, on the page Account"),
     )?;
     identity::end_sessions(transaction, account).await?;
-    identity::end_vouched_access(transaction, account).await?;
+    identity::end_staff_access(transaction, account).await?;
     // The person may already have another account, from an earlier sign-in at the provider.
     let newcomer = describe_newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
-    newcomer.link_account(transaction, account, is_vouched).await?;
+    newcomer.link_account(transaction, account, is_by_staff).await?;
     log(transaction, provider, account, &connecting.account.login).await?;
     Ok(account)
 }

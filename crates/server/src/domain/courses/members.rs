@@ -145,7 +145,7 @@ impl Staff {
         if ends_access {
             identity::end_all_access(transaction, account).await?;
         } else if is_managed_elsewhere {
-            identity::end_vouched_access(transaction, account).await?;
+            identity::end_staff_access(transaction, account).await?;
         }
         self.write_member(transaction, account, login, role).await?;
         let needs_link = ends_access || is_managed_elsewhere;
@@ -164,7 +164,7 @@ impl Staff {
 
     /// Returns the sign-in method of links that this person creates.
     fn sign_in_method(&self) -> SignInMethod {
-        if self.account.is_admin { SignInMethod::Own } else { SignInMethod::Vouched }
+        if self.account.is_admin { SignInMethod::Own } else { SignInMethod::ByStaff }
     }
 
     /// Creates a link that signs a person in once.

@@ -349,7 +349,7 @@ pub(in crate::domain) async fn enroll(
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all_access(transaction, account).await?;
     } else {
-        identity::end_vouched_access(transaction, account).await?;
+        identity::end_staff_access(transaction, account).await?;
     }
     let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
         ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";

@@ -269,7 +269,7 @@ impl App {
         let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
         let account = transaction.one(statement, values![]).await?.int("id")?;
         // Another server that started at the same time has also printed a link, so both must stay valid.
-        let link = identity::further_link(&mut transaction, account, None, SignInMethod::Own).await?;
+        let link = identity::create_link(&mut transaction, account, None, SignInMethod::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
     }

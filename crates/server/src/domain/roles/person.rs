@@ -86,7 +86,7 @@ impl Person {
     /// Fails if its name is invalid, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
-        let way = if self.require_recent_browser()?.is_vouched { SignInMethod::Vouched } else { SignInMethod::Own };
+        let way = if self.require_recent_browser()?.is_by_staff { SignInMethod::ByStaff } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![self.account.id]).await?;

@@ -17,11 +17,11 @@ impl App {
         let (account, state) = match secrets {
             Secrets { bearer: Some(token), .. } => {
                 let mut transaction = self.0.database.read().await?;
-                (identity::account_of_token(&mut transaction, token).await?.0, None)
+                (identity::find_token_owner(&mut transaction, token).await?.0, None)
             }
             Secrets { session: Some(session), .. } => {
                 let mut transaction = self.0.database.read().await?;
-                let found = identity::account_of_session(&mut transaction, session).await?;
+                let found = identity::find_session_account(&mut transaction, session).await?;
                 drop(transaction);
                 let (account, state) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
                 if state.is_stale {

@@ -73,7 +73,7 @@ impl Visitor {
     pub async fn sign_in_by_token(&self, token: &str) -> Result<NewSecret, Problem> {
         self.count_sign_in()?;
         let mut transaction = self.app.0.database.read().await?;
-        let (account, token) = identity::account_of_token(&mut transaction, token).await?;
+        let (account, token) = identity::find_token_owner(&mut transaction, token).await?;
         drop(transaction);
         let mut transaction = self.app.0.database.begin().await?;
         let session = identity::begin_session(&mut transaction, account.id, SignInMethod::Token(token)).await?;
@@ -89,7 +89,7 @@ impl Visitor {
     pub async fn sign_out(&self) -> Result<(), Problem> {
         if let Some(session) = &self.secrets.session {
             let mut transaction = self.app.0.database.read().await?;
-            if identity::account_of_session(&mut transaction, session).await?.is_none() {
+            if identity::find_session_account(&mut transaction, session).await?.is_none() {
                 return Ok(());
             }
             drop(transaction);

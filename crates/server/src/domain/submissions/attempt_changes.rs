@@ -85,8 +85,8 @@ impl Member {
     pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
         let graded = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();
-        let results: Vec<i64> = graded.iter().filter(|(one, _)| !one.is_withheld).map(|(_, result)| *result).collect();
-        let stored = self.stored_results(&results).await?;
+        let shown = graded.iter().filter(|(submission, _)| !submission.is_withheld);
+        let stored = self.stored_results(&shown.map(|(_, result)| *result).collect::<Vec<_>>()).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
             later.grade.as_ref().filter(|grade| grade.has_run())?;

@@ -273,7 +273,7 @@ impl Member {
                AND member.role = 'student'
             LEFT JOIN grade ON grade.submission = submission.id LEFT JOIN result ON result.id = grade.result
             WHERE submission.assignment = ?";
-        let (recent, id) = (health::recency_millis(&self.app.0.policy), assignment.id);
+        let (recent, id) = (health::worker_timeout_millis(&self.app.0.policy), assignment.id);
         Ok(transaction.find(statement, values![self.course, id, id, recent, recent, self.course, id]).await?)
     }
 

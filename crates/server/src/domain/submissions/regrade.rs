@@ -411,8 +411,8 @@ fn describe_rules(rules: &Option<String>) -> String {
 impl Settings {
     /// Returns what differs in the way of grading.
     pub(crate) fn grading_changes(&self, new: &Self) -> Vec<String> {
-        let suite = |one: &Self| one.suite_archive.clone().unwrap_or_else(|| one.suite.clone());
-        let hints = |one: &Self| one.hints.clone().unwrap_or_else(|| "the suite's".to_owned());
+        let suite = |settings: &Self| settings.suite_archive.clone().unwrap_or_else(|| settings.suite.clone());
+        let hints = |settings: &Self| settings.hints.clone().unwrap_or_else(|| "the suite's".to_owned());
         let changed = list_changed([
             ("suite", suite(self), suite(new)),
             ("rules", describe_rules(&self.rules), describe_rules(&new.rules)),

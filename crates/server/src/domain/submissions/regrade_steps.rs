@@ -7,7 +7,7 @@ use crate::{
     db::{DbError, Transaction, Value},
     lti::score,
     problem::Problem,
-    queue::Turn,
+    queue::JobOwner,
     task::JUDGE_ERROR,
     values,
 };
@@ -23,11 +23,11 @@ pub(in crate::domain) async fn enqueue_missing(
     let statement = "SELECT count(*) AS n FROM
         (SELECT id FROM submission WHERE assignment = ? ORDER BY id {for update}) AS held";
     transaction.one(statement, values![assignment.id]).await?;
-    let turn = Turn::Regrade(regrade_id);
-    let from = turn.next(transaction).await?;
-    let mut values: Vec<Value> = vec![regrade_id.into(), turn.key().into()];
+    let owner = JobOwner::Regrade(regrade_id);
+    let from = owner.next(transaction).await?;
+    let mut values: Vec<Value> = vec![regrade_id.into(), owner.key().into()];
     values.extend(statement_pieces(assignment)?.into_iter().map(Value::from));
-    values.extend([from, turn.spacing_millis(), assignment.id, regrade_id].map(Value::from));
+    values.extend([from, owner.spacing_millis(), assignment.id, regrade_id].map(Value::from));
     // The unary plus prevents an index, with which SQLite would search all jobs of the regrade for each submission.
     let statement = concat!(
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)

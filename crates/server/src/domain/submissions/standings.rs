@@ -166,10 +166,10 @@ impl BestAttempt {
             .collect();
         attempts.sort_unstable();
         let value = |points: &Option<String>| points.as_ref().and_then(|points| points.parse::<f64>().ok());
-        attempts.into_iter().fold(None, |best: Option<Self>, (id, came_at, points)| {
-            let late = policy.lateness(extended_to, came_at);
+        attempts.into_iter().fold(None, |best: Option<Self>, (id, arrived_at, points)| {
+            let late = policy.lateness(extended_to, arrived_at);
             let is_late = late.is_some();
-            let reduced = || late.map_or(points.to_owned(), |late| late.left_of(points));
+            let reduced = || late.map_or(points.to_owned(), |late| late.points_left(points));
             let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(reduced));
             let attempt = Self { id, points: graded, is_late };
             match best {

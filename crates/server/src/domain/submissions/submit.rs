@@ -9,7 +9,7 @@ use crate::{
     db::Transaction,
     lti::score,
     problem::{Problem, ensure},
-    queue::{self, Lane, NewJob, Turn},
+    queue::{self, JobKind, JobOwner, NewJob},
     store::{Artifact, digest_of_file},
     task::{Form, Input},
     values,
@@ -39,7 +39,7 @@ pub struct Upload<'a> {
     pub key: Option<&'a str>,
     /// The time at which the request arrived, in milliseconds since 1970 by the database's clock. It counts for due
     /// dates and limits.
-    pub came_at: i64,
+    pub arrived_at: i64,
 }
 
 /// The result of an upload.
@@ -67,7 +67,7 @@ impl Member {
         }
         // Simultaneous uploads of an account are checked one after another. Otherwise an upload could be stored
         // although an earlier one has used up the limit.
-        let _turn = self.app.limits.turn(self.account.id).await?;
+        let _turn = self.app.limits.wait(self.account.id).await?;
         // Check before storing, so that the bytes of a rejected or repeated upload are not stored.
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
@@ -102,20 +102,20 @@ impl Member {
     ) -> Result<i64, Problem> {
         let (mut transaction, assignment) = self.read_at(assignment).await?;
         let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
-        let came_at = now - queue::millis(since.elapsed());
-        let Some((key, size)) = announced else { return Ok(came_at) };
+        let arrived_at = now - queue::millis(since.elapsed());
+        let Some((key, size)) = announced else { return Ok(arrived_at) };
         if let Some(key) = key {
             let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
             // The same upload may have been stored before.
             if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
-                return Ok(came_at);
+                return Ok(arrived_at);
             }
         }
         if !self.is_staff {
-            self.check_limits(&mut transaction, &assignment, came_at).await?;
+            self.check_limits(&mut transaction, &assignment, arrived_at).await?;
         }
         self.check_quota(&mut transaction, size).await?;
-        Ok(came_at)
+        Ok(arrived_at)
     }
 
     /// Returns the earlier submission with the same key; `None` if there is none and a new submission is allowed.
@@ -132,7 +132,7 @@ impl Member {
             return Ok(Some(submission));
         }
         if !self.is_staff {
-            self.check_limits(transaction, assignment, upload.came_at).await?;
+            self.check_limits(transaction, assignment, upload.arrived_at).await?;
         }
         self.check_quota(transaction, artifact.size).await?;
         Ok(None)
@@ -159,7 +159,7 @@ impl Member {
         &self,
         transaction: &mut Transaction,
         assignment: &Assignment,
-        came_at: i64,
+        arrived_at: i64,
     ) -> Result<(), Problem> {
         let settings = &assignment.settings;
         // A failure of the grader does not count as an attempt.
@@ -170,10 +170,10 @@ impl Member {
             LEFT JOIN grade ON grade.submission = submission.id
             LEFT JOIN result ON result.id = grade.result
             WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
-        let row =
-            transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
+        let values = values![arrived_at - HOUR, arrived_at - HOUR, assignment.id, self.account.id];
+        let row = transaction.one(statement, values).await?;
         let due = mark::due_date(transaction, assignment, self.account.id).await?;
-        if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
+        if due.is_some_and(|due| arrived_at > settings.late_policy().closes_at(due)) {
             return Err(Problem::conflict("the due date has passed", "ask the course's staff"));
         }
         ensure(
@@ -215,11 +215,11 @@ impl Member {
             VALUES (?, ?, ?, ?, ?, ?, ?, ?) RETURNING id";
         let (account, digest) = (self.account.id, artifact.digest.as_str());
         let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
-        let (form, came_at) = (upload.form.name(), upload.came_at);
-        let values = values![assignment.id, account, number, form, upload.name, digest, size, came_at];
+        let (form, arrived_at, owner) = (upload.form.name(), upload.arrived_at, JobOwner::Student(account));
+        let values = values![assignment.id, account, number, form, upload.name, digest, size, arrived_at];
         let submission = transaction.one(statement, values).await?.int("id")?;
-        let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
-        let job = NewJob { lane: Lane::Grading, submission: Some(submission), regrade_id: None, turn, payload };
+        let payload = &serde_json::to_string(&task).map_err(|_| Problem::fault())?;
+        let job = NewJob { kind: JobKind::Grading, submission: Some(submission), regrade_id: None, owner, payload };
         queue::enqueue(transaction, &job).await?;
         score::queue_changed_scores(transaction, submission).await?;
         if let Some(key) = upload.key {

@@ -1,5 +1,5 @@
 //! The API of courses and their members.
-use super::super::input::{AddressParts, Body, PlainBody, QueryInput, SeenEvent};
+use super::super::input::{AddressParts, Body, QueryInput, SeenEvent, TextBody};
 use crate::{
     domain::{Admin, Course, CourseMembership, Event, EventQuery, Link, MemberInfo, MemberLine, Person, Staff},
     problem::{Problem, ensure},
@@ -63,7 +63,7 @@ pub(super) async fn import(
     staff: Staff,
     QueryInput(query): QueryInput<Preview>,
     QueryInput(seen): QueryInput<SeenEvent>,
-    PlainBody(table): PlainBody,
+    TextBody(table): TextBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
     Ok(Json(staff.import(&table, query.preview, seen.event()).await?))
 }

@@ -74,13 +74,13 @@ pub(in crate::web) async fn receive(
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
     // The key in a form is not known before the body is read.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
-    let came_at = match member.check_announcement(assignment, announced, since).await {
-        Ok(came_at) => came_at,
+    let arrived_at = match member.check_announcement(assignment, announced, since).await {
+        Ok(arrived_at) => arrived_at,
         Err(problem) => return Err(upload::reject(&member.app, request, max_bytes, problem).await),
     };
     let received = upload::receive(&member.app, request, max_bytes).await?;
     let excess = since.elapsed().saturating_sub(upload::allowed_time(std::fs::metadata(&received.file)?.len()));
-    let came_at = came_at.saturating_add(millis(excess));
+    let arrived_at = arrived_at.saturating_add(millis(excess));
     let form = archive_check::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
     // The page's key is combined with the file, because another file from the same page is another submission.
@@ -92,7 +92,7 @@ pub(in crate::web) async fn receive(
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
         return Err(Problem::invalid("a key must be 1 to 200 characters long"));
     }
-    member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, came_at }).await
+    member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, arrived_at }).await
 }
 
 /// The points and the comment that staff give a submission.

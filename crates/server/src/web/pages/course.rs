@@ -76,7 +76,7 @@ impl OwnWork {
         let policy = assignment.settings.late_policy();
         let closes_at = due.map(|due| policy.closes_at(due));
         let attempts = assignment.settings.attempts as usize;
-        let points = |one: &Submission| one.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
+        let points = |submission: &Submission| submission.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
         let graded = submissions.iter().rev().filter_map(|submission| Some((points(submission)?, submission)));
         let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
         Ok(Self {

@@ -85,15 +85,15 @@ impl GradesQuery {
     fn select_page(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let search = self.q.trim().to_lowercase();
         let made_mistake =
-            |one: &ShortStanding| one.counts.as_ref().and_then(statistics::likely_mistake) == Some(&*self.mistake);
-        let is_selected = |one: &&ShortStanding| {
-            (one.login.contains(&search) || one.name.to_lowercase().contains(&search))
-                && statistics::is_in_section(one, &self.section)
-                && (self.mistake.is_empty() || made_mistake(one))
+            |row: &ShortStanding| row.counts.as_ref().and_then(statistics::likely_mistake) == Some(&*self.mistake);
+        let is_selected = |standing: &&ShortStanding| {
+            (standing.login.contains(&search) || standing.name.to_lowercase().contains(&search))
+                && statistics::is_in_section(standing, &self.section)
+                && (self.mistake.is_empty() || made_mistake(standing))
         };
         let mut standings: Vec<&ShortStanding> = standings.iter().filter(is_selected).collect();
-        let points = |one: &ShortStanding| {
-            let points = one.counts.as_ref().and_then(|counts| counts.points.as_ref());
+        let points = |standing: &ShortStanding| {
+            let points = standing.counts.as_ref().and_then(|counts| counts.points.as_ref());
             points.and_then(|points| points.parse::<f64>().ok()).unwrap_or(-1.0)
         };
         match self.sort.as_str() {

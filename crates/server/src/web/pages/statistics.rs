@@ -74,7 +74,7 @@ impl Statistics {
             mean_and_median: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
             histogram: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_clusters(standings, likely_mistake),
-            duplicates: find_clusters(standings, |one| Some(one.digest.as_str()).filter(|digest| !digest.is_empty()))
+            duplicates: find_clusters(standings, |row| Some(row.digest.as_str()).filter(|digest| !digest.is_empty()))
                 .into_iter()
                 .filter(|(_, students, _)| students.len() > 1)
                 .collect(),

@@ -3,7 +3,7 @@ use super::grader;
 use crate::support::cluster::Cluster;
 use fosssim_server::{
     db::{self, Address, Database, DbError},
-    queue::{self, Lane, NewJob, Turn},
+    queue::{self, JobKind, JobOwner, NewJob},
     store::{Digest, Store},
     task::{Form, Input, Suite, Task},
     values,
@@ -168,10 +168,10 @@ impl Arena {
             .int("id")?;
         let payload = serde_json::to_string(task).expect("JSON");
         let job = NewJob {
-            lane: Lane::Grading,
+            kind: JobKind::Grading,
             submission: Some(submission),
             regrade_id: None,
-            turn: Turn::Student(number),
+            owner: JobOwner::Student(number),
             payload: &payload,
         };
         queue::enqueue(&mut transaction, &job).await?;
