@@ -28,7 +28,7 @@ use std::{
 #[derive(Debug)]
 pub(super) enum Output {
     /// The output is discarded.
-    Nowhere,
+    Discarded,
     /// The output is standard output (`-`).
     Stdout,
     /// The output is a character device.
@@ -99,7 +99,7 @@ impl Output {
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished_path()),
-            Self::Nowhere | Self::Stdout | Self::Device(..) => None,
+            Self::Discarded | Self::Stdout | Self::Device(..) => None,
         }
     }
 
@@ -133,7 +133,7 @@ impl Output {
 
     fn name(&self) -> String {
         match self {
-            Self::Nowhere => "nothing".to_owned(),
+            Self::Discarded => "nothing".to_owned(),
             Self::Stdout => "to standard output".to_owned(),
             Self::Device(_, name) => name.display().to_string(),
             Self::File(file) => file.target().display().to_string(),
@@ -168,7 +168,7 @@ impl Output {
     /// command can finish.
     fn write_until_closed<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
-            Self::Nowhere => Ok(taken),
+            Self::Discarded => Ok(taken),
             Self::Stdout => match act(&mut io::stdout()) {
                 Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(taken),
                 other => other,

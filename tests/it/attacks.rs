@@ -20,7 +20,7 @@ fn attacked(backend: &Backend, families: &[&str]) -> Option<PromiseTable> {
     let folder = folder();
     std::fs::create_dir_all(&folder).unwrap();
     let chosen = |name: &str| families.is_empty() || families.iter().any(|family| name.starts_with(family));
-    let table = selftest::run_chosen(backend, cc, &folder, chosen, |promise| match &promise.state {
+    let table = selftest::run_selected(backend, cc, &folder, chosen, |promise| match &promise.state {
         PromiseState::Kept => {}
         state => eprintln!("{}: {state:?}", promise.attack),
     });

@@ -366,11 +366,11 @@ impl Observer for Inspector<'_> {
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
         let motion = || PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let is_hit = matches!(decision, Decision::Hit { .. });
-        let is_wanted = self.wanted_calls.iter().any(|(which, one)| {
-            *one == pair
-                && match which {
+        let is_wanted = self.wanted_calls.iter().any(|(wanted, of_pair)| {
+            *of_pair == pair
+                && match wanted {
                     WantedCalls::Hits => is_hit,
-                    WantedCalls::InPass(one) => *one == pass,
+                    WantedCalls::InPass(wanted_pass) => *wanted_pass == pass,
                     WantedCalls::Every => true,
                 }
         });

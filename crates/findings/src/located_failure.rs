@@ -57,7 +57,7 @@ pub struct LocatedFailure {
 }
 
 impl FailureKind {
-    /// Returns how a program failed that ended in this way; `None` if it ended well, or if the kind of failure is
+    /// Returns how a program failed that ended in this way; `None` if it ended normally, or if the kind of failure is
     /// unknown.
     pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {

@@ -85,7 +85,9 @@ impl SceneResult {
             Reason::Skipped(_) | Reason::Stopped | Reason::DoesNotBuild | Reason::Unusable(_) => true,
             Reason::Wrong(_) | Reason::Trace(_) | Reason::Program(_) | Reason::Failed(_) | Reason::Withheld => false,
         };
-        self.explanations.retain(|one| matches!(one.topic, ExplanationTopic::Mistake | ExplanationTopic::Unfinished));
+        self.explanations.retain(|explanation| {
+            matches!(explanation.topic, ExplanationTopic::Mistake | ExplanationTopic::Unfinished)
+        });
         for explanation in &mut self.explanations {
             (explanation.details, explanation.example) = (Vec::new(), None);
         }
@@ -313,7 +315,7 @@ pub enum BuildEnd {
     /// The build ended with an exit code other than 0, or was stopped.
     #[serde(rename = "Ended")]
     Failure(RunEnd),
-    /// The build ended well, but did not produce a program of this name.
+    /// The build ended normally, but did not produce a program of this name.
     #[serde(rename = "MadeNo")]
     MissingProgram(String),
     /// The program that was built cannot be used, for the given reason.

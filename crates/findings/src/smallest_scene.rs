@@ -22,7 +22,7 @@ pub struct SmallestScene {
     pub runs: u32,
     /// Whether no single change makes the scene smaller; false if the search was stopped early.
     pub is_minimal: bool,
-    /// A note on how the program ended; `None` if it ended well.
+    /// A note on how the program ended; `None` if it ended normally.
     pub note: Option<String>,
     /// The first fault, if the hints show it.
     #[serde(rename = "first")]

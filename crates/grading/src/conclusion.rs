@@ -1,7 +1,7 @@
 //! Decides the verdict on one scene, from the program's end and the trace.
 //!
 //! The functions are pure: they use no processes and no files. The worse fault counts. A crash is reported even if the
-//! trace is right, and a wrong trace even if the program ended well.
+//! trace is right, and a wrong trace even if the program ended normally.
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
@@ -38,7 +38,7 @@ pub struct ProgramRun {
 }
 
 impl ProgramRun {
-    /// Returns the values for a trace that no program wrote. They are the same as for a program that ended well.
+    /// Returns the values for a trace that no program wrote. They are the same as for a program that ended normally.
     pub fn without_program() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
         Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }

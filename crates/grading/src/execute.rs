@@ -230,7 +230,7 @@ impl Runner<'_> {
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, CaughtPanic> {
         let judged = catch_panic(|| {
-            failed_scene::inject(Activity::Judging, &program.program);
+            failed_scene::inject_panic(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
         // The judge has already reported read errors.
@@ -291,7 +291,7 @@ impl Runner<'_> {
 /// Returns the result of a run that was judged, with its explanations. If the search for explanations panics, returns
 /// the panic.
 fn explain_run(run: &JudgedRun<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, CaughtPanic)> {
-    let mut explaining = catch_panic(|| failed_scene::inject(Activity::Explaining, program)).err();
+    let mut explaining = catch_panic(|| failed_scene::inject_panic(Activity::Explaining, program)).err();
     let explain = |look: SearchDepth| {
         catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);

@@ -38,11 +38,11 @@ fn save_trace(folder: &FilePlace, task: &SceneTask, trace: &[u8]) -> io::Result<
 
 /// Makes the grader fail in tests: a program with this name causes a panic in this activity.
 #[cfg(test)]
-pub(super) fn inject(stage: Activity, program: &Path) {
+pub(super) fn inject_panic(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let word = format!("{stage:?}").to_lowercase();
     assert!(name != format!("fault-while-{word}"), "injected grader failure");
 }
 
 #[cfg(not(test))]
-pub(super) const fn inject(_: Activity, _: &Path) {}
+pub(super) const fn inject_panic(_: Activity, _: &Path) {}

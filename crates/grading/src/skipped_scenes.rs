@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &verdicts_and_times), None);
         // Scenes without a verdict yet cannot move the end backward.
         let later: Vec<_> =
-            verdicts_and_times.iter().enumerate().map(|(number, one)| one.filter(|_| number != 0)).collect();
+            verdicts_and_times.iter().enumerate().map(|(number, entry)| entry.filter(|_| number != 0)).collect();
         assert_eq!(find_first_skipped(&PATIENCE, false, &later), Some((25, limits)));
     }
 

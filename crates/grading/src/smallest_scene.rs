@@ -81,14 +81,14 @@ pub struct WrongScene<'a> {
 /// scenes an unknown cause.
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely = likely.iter().filter(|explanation| explanation.is_about_program() || explanation.is_not_finite());
-    let likely = likely.map(|one| WrongReason::Mistake(one.clone().into()));
+    let likely = likely.map(|mistake| WrongReason::Mistake(mistake.clone().into()));
     let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
     for reason in likely.chain(wrong.iter().filter_map(|wrong_scene| WrongReason::from_end(wrong_scene.ended))) {
-        let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
-            (WrongReason::Mistake(mistake), None) => is_named_in(mistake, one.explanations),
+        let is_of = |scene: &&WrongScene<'a>| match (&reason, WrongReason::from_end(scene.ended)) {
+            (WrongReason::Mistake(mistake), None) => is_named_in(mistake, scene.explanations),
             (reason, end) => end.as_ref() == Some(reason),
         };
-        left.retain(|one| !is_of(one));
+        left.retain(|scene| !is_of(scene));
         let scenes: Vec<&SceneTask> = wrong.iter().filter(is_of).map(|wrong_scene| wrong_scene.task).collect();
         if !scenes.is_empty() && all.iter().all(|(known, _)| known.as_ref() != Some(&reason)) {
             all.push((Some(reason), scenes));
@@ -101,9 +101,9 @@ pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec
 /// Returns whether a scene shows only what those in `found` show: it has the content of one of them, or its
 /// explanations name the cause of one.
 pub fn is_repetition(small: &SmallestScene, found: &[SmallestScene]) -> bool {
-    found.iter().any(|one| {
-        let cause = one.explanations.first().filter(|cause| cause.is_about_program());
-        one.xml == small.xml || cause.is_some_and(|cause| is_named_in(cause, &small.explanations))
+    found.iter().any(|scene| {
+        let cause = scene.explanations.first().filter(|cause| cause.is_about_program());
+        scene.xml == small.xml || cause.is_some_and(|cause| is_named_in(cause, &small.explanations))
     })
 }
 
@@ -177,7 +177,7 @@ impl Shrinker<'_> {
     }
 }
 
-/// Returns the wrong steps of a run. If the program did not end well, this is the step after its last record.
+/// Returns the wrong steps of a run. If the program did not end normally, this is the step after its last record.
 fn list_wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());

@@ -15,8 +15,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// Judges a trace of a scene as if a program had written it and ended well. Returns the result of the scene, and the
-/// outcome of judging.
+/// Judges a trace of a scene as if a program had written it and ended normally. Returns the result of the scene, and
+/// the outcome of judging.
 pub fn judge_trace<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,

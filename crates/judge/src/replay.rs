@@ -339,7 +339,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 return true;
             }
             if slot.is_beyond_limit {
-                self.outcome.stop = Some(beyond_limit(slot, self.step_rules.layout));
+                self.outcome.stop = Some(stop_beyond_limit(slot, self.step_rules.layout));
                 return true;
             }
             self.has_damage |= slot.damage.is_some();
@@ -432,7 +432,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
 /// Returns the reason to stop at an end record whose lists are as long as the reference's, but longer than the kept
 /// part.
-fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
+fn stop_beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged_polynomials, slot.end.polynomials.len());
     Stop::Trace {
         frame: layout.end_record(slot.step),

@@ -16,7 +16,7 @@ pub struct Size {
 
 /// The reason why a size is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum BadSize {
+pub enum SizeError {
     /// The text does not consist of two numbers.
     #[error("`{0}` is not a size; write WIDTHxHEIGHT, for example 640x480")]
     Unreadable(String),
@@ -30,9 +30,9 @@ impl Size {
     ///
     /// # Errors
     /// Fails if a side is below [`MIN_SIDE`] or above [`MAX_SIDE`].
-    pub const fn new(width: u32, height: u32) -> Result<Self, BadSize> {
+    pub const fn new(width: u32, height: u32) -> Result<Self, SizeError> {
         if width < MIN_SIDE || width > MAX_SIDE || height < MIN_SIDE || height > MAX_SIDE {
-            return Err(BadSize::OutOfRange(width, height));
+            return Err(SizeError::OutOfRange(width, height));
         }
         Ok(Self { width, height })
     }
@@ -60,10 +60,10 @@ impl fmt::Display for Size {
 }
 
 impl FromStr for Size {
-    type Err = BadSize;
+    type Err = SizeError;
 
-    fn from_str(text: &str) -> Result<Self, BadSize> {
-        let unreadable = || BadSize::Unreadable(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, SizeError> {
+        let unreadable = || SizeError::Unreadable(text.to_owned());
         let (width, height) = text.split_once(['x', 'X']).ok_or_else(unreadable)?;
         let side = |side: &str| side.trim().parse::<u32>().map_err(|_| unreadable());
         Self::new(side(width)?, side(height)?)

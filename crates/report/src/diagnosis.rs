@@ -6,7 +6,7 @@ use super::{
     smallest::{self, SmallestView},
     style::{Style, TextStyle},
     view::{FindingView, to_document, view},
-    words::{describe_first, describe_located},
+    words::{describe_first_difference, describe_located},
 };
 use crate::untrusted_text::to_one_line;
 use fosssim_findings::{
@@ -40,7 +40,7 @@ impl Diagnosis {
     /// Renders the report as text.
     pub fn render_text(&self, style: Style) -> String {
         let smallest: String =
-            self.smallest.iter().map(|one| format!("\n{}", smallest::render_text(one, style))).collect();
+            self.smallest.iter().map(|scene| format!("\n{}", smallest::render_text(scene, style))).collect();
         match &self.cases[..] {
             [] if smallest.is_empty() => return "No smaller scene shows the same fault.\n".to_owned(),
             [] => return smallest.trim_start().to_owned(),
@@ -79,13 +79,13 @@ impl Diagnosis {
         }
         for (place, case) in self.cases.iter().enumerate() {
             // A note that many traces have, such as a crash, is written once.
-            let is_alike = |one: &&Case| {
+            let is_alike = |other: &&Case| {
                 case.note.is_some()
                     && case.explanations.is_empty()
-                    && one.explanations.is_empty()
-                    && case.note == one.note
+                    && other.explanations.is_empty()
+                    && case.note == other.note
             };
-            if self.cases[..place].iter().any(|one| is_alike(&one)) {
+            if self.cases[..place].iter().any(|earlier| is_alike(&earlier)) {
                 continue;
             }
             let more = self.cases[place + 1..].iter().filter(is_alike).count();
@@ -120,7 +120,7 @@ fn render_head(case: &Case, more: usize, style: Style) -> String {
         let _ = write!(line, ": {note}");
     }
     if let (Some(first), true) = (&case.first, case.explanations.is_empty()) {
-        let _ = write!(line, ": {}", describe_first(first));
+        let _ = write!(line, ": {}", describe_first_difference(first));
     }
     line
 }
@@ -144,7 +144,7 @@ fn render_single(case: &Case, style: Style) -> String {
         return text;
     }
     if let Some(first) = first {
-        let _ = writeln!(text, "{}", describe_first(first));
+        let _ = writeln!(text, "{}", describe_first_difference(first));
     }
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains the trace.\n";
@@ -197,7 +197,7 @@ view! {
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// A note on how the program ended; null if it ended well.
+        /// A note on how the program ended; null if it ended normally.
         note: Option<&'a str> = case.note.as_deref(),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {

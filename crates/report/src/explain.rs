@@ -289,7 +289,7 @@ pub(crate) mod tests {
     /// the term of the mistake.
     #[test]
     fn a_known_mistake_has_a_term_and_no_weights() {
-        let weights = |one: Explanation| match one.details.as_slice() {
+        let weights = |explanation: Explanation| match explanation.details.as_slice() {
             [Detail::Polynomial(PolynomialDetail::Weight(weight))] => vec![weight.clone()],
             other => panic!("{other:?}"),
         };

@@ -31,7 +31,7 @@ fn describe_size(scene: &Scene) -> String {
     ];
     let counts = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| format_count(*many, noun));
     let milestones = scene.assignments().map(|assignment| assignment.key().to_uppercase());
-    let milestones = milestones.reduce(|all, one| all + ", " + &one).map(|all| format!("for {all}"));
+    let milestones = milestones.reduce(|list, milestone| list + ", " + &milestone).map(|all| format!("for {all}"));
     counts.chain(milestones).collect::<Vec<_>>().join(", ")
 }
 

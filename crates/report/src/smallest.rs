@@ -6,7 +6,7 @@ use crate::{
     style::{Style, TextStyle},
     untrusted_text::{quote, strip_control_characters},
     view::{FindingView, view},
-    words::describe_first,
+    words::describe_first_difference,
 };
 use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest_scene::SmallestScene};
 
@@ -24,7 +24,7 @@ pub fn render_text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));
     let explanation_lines = explanation_texts(&explanations[..explanations.len().min(1)], style);
-    let first = first.as_ref().filter(|_| explanation_lines.is_empty()).map(describe_first);
+    let first = first.as_ref().filter(|_| explanation_lines.is_empty()).map(describe_first_difference);
     let causes = note.iter().cloned().chain(first).chain(explanation_lines).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
     parts.extend(small.difference.clone());
@@ -51,7 +51,7 @@ view! {
         runs: u32 = small.runs,
         /// Whether no single change makes the scene smaller. It is false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// A note on how the program ended; null if it ended well.
+        /// A note on how the program ended; null if it ended normally.
         note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first_finding {

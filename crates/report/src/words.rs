@@ -28,7 +28,7 @@ const NOT_FOUND_CODE: i32 = 127;
 /// Describes the result of a scene in one sentence.
 pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
-        Reason::Right => step_share::describe_right(result.steps, spell_number),
+        Reason::Right => step_share::describe_right_steps(result.steps, spell_number),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         // Traces that were handed in have no program that ended.
@@ -71,7 +71,7 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
         );
     }
     if let Some(disclosure) = &result.disclosure {
-        lines.extend(disclosure.official().first_divergence.as_ref().map(describe_first));
+        lines.extend(disclosure.official().first_divergence.as_ref().map(describe_first_difference));
         lines.extend(describe_counts(disclosure.official()));
         if let Some(damage) = &disclosure.damage {
             lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.what));
@@ -242,7 +242,7 @@ fn describe_failure(failure: &Failure) -> String {
 }
 
 /// Describes where a trace first differs from the reference, if the hints allow it.
-pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
+pub(crate) fn describe_first_difference(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
         DisclosedFinding::Place { step, kind, place } => {

@@ -162,7 +162,7 @@ enum BackendKind {
 }
 
 impl BackendKind {
-    fn launcher(supervisor: Supervisor, layers: ActiveLayers) -> Self {
+    fn with_launcher(supervisor: Supervisor, layers: ActiveLayers) -> Self {
         Self::Launcher { supervisor, layers, keepers: Arc::default() }
     }
 }
@@ -188,7 +188,7 @@ impl Backend {
     pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let layers = layers::select_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: BackendKind::launcher(supervisor, layers), layers: reports.into() })
+        Ok(Self { kind: BackendKind::with_launcher(supervisor, layers), layers: reports.into() })
     }
 
     /// Returns this backend with the layers in `reports`, and with the file rules of a kernel that has this Landlock
@@ -197,7 +197,7 @@ impl Backend {
         let kind = match &self.kind {
             BackendKind::Launcher { supervisor, .. } => {
                 let layers = layers::select_layers(&reports).map_err(missing_layers)?;
-                BackendKind::launcher(supervisor.clone(), ActiveLayers { landlock_version, ..layers })
+                BackendKind::with_launcher(supervisor.clone(), ActiveLayers { landlock_version, ..layers })
             }
             BackendKind::Fake(script) => BackendKind::Fake(script.clone()),
         };
@@ -233,7 +233,7 @@ impl Backend {
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let layers = layers::available_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: BackendKind::launcher(supervisor, layers), layers: reports.into() })
+        Ok(Self { kind: BackendKind::with_launcher(supervisor, layers), layers: reports.into() })
     }
 
     /// Returns whether all layers that are required on this host work.

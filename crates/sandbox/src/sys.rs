@@ -255,7 +255,7 @@ pub(super) fn reap() -> io::Result<Option<ReapedProcess>> {
 }
 
 /// Waits until the child has ended. Returns its exit code, or 128 plus the signal that ended it.
-pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
+pub(super) fn wait_for_exit(pid: i32) -> io::Result<u8> {
     let ended = rustix::io::retry_on_intr(|| rustix::process::waitpid(Pid::from_raw(pid), WaitOptions::empty()))?;
     let (_, status) = ended.ok_or(io::ErrorKind::WouldBlock)?;
     let code = status.terminating_signal().map(|signal| 128 + signal).or(status.exit_status());
@@ -284,7 +284,7 @@ pub(super) enum Readiness {
     /// There are data to read, or the stream has ended.
     Ready,
     /// The other end is closed, and there are no data to read.
-    HungUp,
+    Closed,
 }
 
 /// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns the state of each
@@ -301,7 +301,7 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     Ok(fds.map(|fd| match fd.and_then(|_| found.next()).unwrap_or(PollFlags::empty()) {
         events if events.is_empty() => Readiness::Idle,
         events if events.contains(PollFlags::IN) => Readiness::Ready,
-        _ => Readiness::HungUp,
+        _ => Readiness::Closed,
     }))
 }
 

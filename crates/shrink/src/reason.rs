@@ -25,7 +25,7 @@ pub struct Observation {
 /// The reason why a program is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrongReason {
-    /// The program does not end well. The values are its failure, and the signal of a crash.
+    /// The program does not end normally. The values are its failure, and the signal of a crash.
     Ended(FailureKind, Option<i32>),
     /// The trace cannot be read to its end.
     BrokenTrace,
@@ -36,7 +36,7 @@ pub enum WrongReason {
 }
 
 impl WrongReason {
-    /// Returns the reason of a program that does not end well.
+    /// Returns the reason of a program that does not end normally.
     pub fn from_end(ended: &RunEnd) -> Option<Self> {
         let signal = if let RunEnd::Signalled(signal) = ended { Some(*signal) } else { None };
         FailureKind::from_end(ended).map(|failure| Self::Ended(failure, signal))
@@ -47,11 +47,12 @@ impl WrongReason {
     pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
         let (fault, detail) = find_reason(scene, seen)?;
         let Some(detail) = detail else { return Some(fault) };
-        let is_likely = |one: &Explanation| {
-            one.is_not_finite() || (one.is_about_program() && (one.is_complete() || one.names_stage()))
+        let is_likely = |explanation: &Explanation| {
+            explanation.is_not_finite()
+                || (explanation.is_about_program() && (explanation.is_complete() || explanation.names_stage()))
         };
         let mut explanations = diagnose::explain(scene, &seen.trace).into_iter();
-        let likely = explanations.find(is_likely).map(|one| Self::Mistake(Box::new(one)));
+        let likely = explanations.find(is_likely).map(|explanation| Self::Mistake(Box::new(explanation)));
         likely.or_else(|| is_clear_finding(detail).then_some(fault))
     }
 

@@ -64,7 +64,8 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     }
     all.push(with(Collision::None));
     let plain = [Integrator::ExplicitEuler, Integrator::SymplecticEuler, Integrator::LinearizedImplicitEuler];
-    let allowed = plain.into_iter().filter(|one| assignment.definition().library.integrators.contains(one));
+    let allowed =
+        plain.into_iter().filter(|integrator| assignment.definition().library.integrators.contains(integrator));
     all.extend(allowed.map(|integrator| Scene { integrator, ..scene.clone() }));
     for body in 0..scene.particles.len() {
         all.push(scene.clone());

@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_student::{Student, assignments::probe_scenes, find, record_limited_trace};
 
-/// Returns the observation of a program that ended well.
+/// Returns the observation of a program that ended normally.
 fn from_trace(trace: Vec<u8>) -> Observation {
     Observation { trace, ended: fosssim_ended::RunEnd::Exited(0) }
 }

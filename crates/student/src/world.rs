@@ -136,7 +136,7 @@ impl<'a> ParticlePairs<'a> {
     }
 
     fn edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
-        let is_fixed = move |one: usize| self.scene.particles[one].fixed;
+        let is_fixed = move |particle: usize| self.scene.particles[particle].fixed;
         self.scene.edges.iter().enumerate().filter_map(move |(index, edge)| {
             let is_endpoint = edge.first == particle || edge.second == particle;
             let is_still = [particle, edge.first, edge.second].into_iter().all(is_fixed);

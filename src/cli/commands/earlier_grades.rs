@@ -56,7 +56,7 @@ pub(super) fn add_earlier_grades(earlier: &[EarlierGrade], grades: &mut [Grade])
         grade.earlier_grade = earlier.iter().find(|before| before.submission == name).cloned();
     }
     let new: Vec<&str> =
-        grades.iter().filter(|one| one.earlier_grade.is_none()).map(|one| one.submission.as_str()).collect();
+        grades.iter().filter(|grade| grade.earlier_grade.is_none()).map(|grade| grade.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
         console::print_remark(format!(

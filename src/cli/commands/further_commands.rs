@@ -20,7 +20,7 @@ pub(super) struct FurtherCommands<'a> {
 impl FurtherCommands<'_> {
     /// Returns the suggested commands for a scene.
     pub(super) fn list_commands(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
-        let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
+        let Some(submission) = self.submissions.iter().find(|submission| submission.name == grade.submission) else {
             return Vec::new();
         };
         let mut lines = Vec::new();

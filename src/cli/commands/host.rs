@@ -148,7 +148,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
-    let table = selftest::run_chosen(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
+    let table = selftest::run_selected(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::PromiseState::Broken(how) = &promise.state {
             console::print_error(format!("broken: {}: {how}\n", promise.attack));

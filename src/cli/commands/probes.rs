@@ -210,7 +210,7 @@ pub(super) fn judge_case(
     let options = Options { uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
-    // If the program did not end well, the result of its run explains more than the end of its trace.
+    // If the program did not end normally, the result of its run explains more than the end of its trace.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| describe_stop(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
@@ -278,7 +278,7 @@ fn make_absolute(program: &Path) -> PathBuf {
     }
 }
 
-/// Describes how a program ended; `None` if it ended well.
+/// Describes how a program ended; `None` if it ended normally.
 pub(super) fn describe_end(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,

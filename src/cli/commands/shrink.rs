@@ -120,7 +120,7 @@ pub(super) fn describe(
     let note = FailureKind::from_end(&seen.ended).and_then(|_| describe_end(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
     let (case, card, _) = judge_case(names, false, scene, &seen.trace[..], note, drawing);
-    // If the program does not end well but its steps are right, the card would show two equal motions.
+    // The card of a program that does not end normally, but whose steps are right, would show two equal motions.
     let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     let Case { trace: program, note, first, explanations, .. } = case;
     let names = [program.as_str(), origin, suite].map(quote);
@@ -159,7 +159,7 @@ pub(super) fn describe(
 /// Returns the explanation of the cause, but with the example from the smallest scene.
 fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
     let named = own.iter().find(|explanation| is_named_in(cause, std::slice::from_ref(explanation)));
-    let example = named.or(own.first()).and_then(|one| one.example.clone());
+    let example = named.or(own.first()).and_then(|explanation| explanation.example.clone());
     // If the cause is unwritten stages, the explanation lists these stages.
     let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
     let details = match (&cause.topic, named) {

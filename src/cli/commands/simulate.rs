@@ -16,7 +16,7 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     let inputs: Vec<_> = scene.identity.into_iter().collect();
     let output = match &arguments.output {
         Some(name) => Output::create(name, &inputs)?,
-        None => Output::Nowhere,
+        None => Output::Discarded,
     };
     let to_stdout = output.is_stdout();
     let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::OnDemand };

@@ -100,11 +100,11 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
 
 /// Describes the size of a plan, such as `12 scenes, 100 points`.
 fn describe_size(plan: &Plan) -> String {
-    format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
+    format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), format_points_with_unit(plan.max_points()))
 }
 
 /// Formats points, such as `1 point` or `12.5 points`.
-fn counted_points(value: f64) -> String {
+fn format_points_with_unit(value: f64) -> String {
     let words = format_points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
@@ -168,13 +168,13 @@ fn render_head(plan: &Plan, style: Style) -> String {
 
 fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
-    let (points, visibility) = (counted_points(marking.points), to_key(&marking.visibility).replace('_', " "));
+    let (points, visibility) = (format_points_with_unit(marking.points), to_key(&marking.visibility).replace('_', " "));
     let name = style.paint(TextStyle::Strong, &to_one_line(&group.name));
     let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.is_extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
-        let (points, runs) = (counted_points(points), format_count(runs.into(), "run"));
+        let (points, runs) = (format_points_with_unit(points), format_count(runs.into(), "run"));
         let _ = writeln!(
             text,
             "  speed: {points}, full points up to {full_at} times the reference's processor time, none from \
@@ -203,7 +203,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
         let (seen, possible) = coverage.counts(index);
         (all_seen, all) = (all_seen + seen, all + possible);
         let _ = writeln!(text, "  {:width$}  {seen:4} of {possible:4}", family.name);
-        for missing in coverage.missing().filter(|one| contents.lists_missing && one.family == index) {
+        for missing in coverage.missing().filter(|pairing| contents.lists_missing && pairing.family == index) {
             let _ = writeln!(text, "    missing: {}", missing.describe());
         }
     }
@@ -241,7 +241,7 @@ fn describe_unknown_features(plan: &Plan, style: Style) -> Vec<String> {
     let note = style.paint(TextStyle::Notice, "note");
     let scenes = plan.scenes().filter_map(|task| {
         let unknown = task.scene.unknown_features(milestone).map(|unknown| unknown.to_string());
-        Some((to_one_line(&task.name), unknown.reduce(|all, one| all + ", " + &one)?))
+        Some((to_one_line(&task.name), unknown.reduce(|list, part| list + ", " + &part)?))
     });
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }

@@ -132,7 +132,7 @@ pub enum ChangeCause {
     Integrator,
     /// The forces or the integrator, which the trace does not distinguish.
     ForcesOrIntegrator,
-    /// The derivatives of forces or the integrator, which the trace does not distinguish.
+    /// The derivatives of forces, or the integrator. The trace cannot distinguish the two.
     JacobiansOrIntegrator,
 }
 

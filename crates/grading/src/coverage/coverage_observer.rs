@@ -59,7 +59,7 @@ impl<'a> CoverageObserver<'a> {
         let masses = events::masses(scene, bodies);
         match detection.pair.kind {
             PairKind::ParticleParticle => {
-                let (fixed, radii) = (events::fixed_of_two(scene, bodies), events::radii(scene, bodies, None));
+                let (fixed, radii) = (events::count_fixed_of_two(scene, bodies), events::radii(scene, bodies, None));
                 ParticleContact { found, when, fixed, masses, radii, company, restitution, integrator }.event()
             }
             PairKind::ParticleEdge => {
@@ -67,7 +67,7 @@ impl<'a> CoverageObserver<'a> {
                 let contact = EdgeContact {
                     found,
                     when,
-                    fixed: events::fixed_of_three(scene, bodies),
+                    fixed: events::count_fixed_of_three(scene, bodies),
                     place: events::contact_place(detection, bodies, time),
                     ends: events::ends(edge),
                     motion: events::edge_motion(detection, bodies),
@@ -119,7 +119,7 @@ impl<'a> CoverageObserver<'a> {
             3 => Size::Three,
             _ => Size::More,
         };
-        let held = match (particles.iter().any(|&one| scene.particles[one].fixed), half_plane) {
+        let held = match (particles.iter().any(|&particle| scene.particles[particle].fixed), half_plane) {
             (false, false) => Held::Nothing,
             (true, false) => Held::Fixed,
             (false, true) => Held::HalfPlane,
@@ -216,7 +216,7 @@ impl Observer for CoverageObserver<'_> {
             Decision::Miss { .. } => {
                 let no_contact = NoContact {
                     kind: events::kind(detection.pair.kind),
-                    why: events::miss_reason(detection.pair.kind, detection.polynomials),
+                    why: events::find_miss_reason(detection.pair.kind, detection.polynomials),
                     found: events::stage_value(self.stage),
                     fixed: events::any_fixed(self.scene, &bodies),
                 };
@@ -234,13 +234,13 @@ impl Observer for CoverageObserver<'_> {
 
     fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         let zone_members =
-            |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
+            |zone: &Zone<'_>| (zone.particles.iter().map(|&particle| particle as usize).collect(), zone.half_plane);
         self.step.previous_zones = std::mem::replace(&mut self.step.zones, zones.iter().map(zone_members).collect());
     }
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         self.step.rounds = round;
-        let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
+        let particles: Vec<usize> = zone.particles.iter().map(|&particle| particle as usize).collect();
         for zone in self.zone_events(&particles, zone.half_plane) {
             self.coverage.record_event(&zone.event());
         }

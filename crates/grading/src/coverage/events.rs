@@ -75,7 +75,7 @@ pub(super) fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
     }
 }
 
-pub(super) fn fixed_of_two(scene: &Scene, bodies: &[usize]) -> FixedOfTwo {
+pub(super) fn count_fixed_of_two(scene: &Scene, bodies: &[usize]) -> FixedOfTwo {
     match (scene.particles[bodies[0]].fixed, scene.particles[bodies[1]].fixed) {
         (false, false) => FixedOfTwo::None,
         (true, false) => FixedOfTwo::First,
@@ -84,7 +84,7 @@ pub(super) fn fixed_of_two(scene: &Scene, bodies: &[usize]) -> FixedOfTwo {
     }
 }
 
-pub(super) fn fixed_of_three(scene: &Scene, bodies: &[usize]) -> FixedOfThree {
+pub(super) fn count_fixed_of_three(scene: &Scene, bodies: &[usize]) -> FixedOfThree {
     let fixed = |index: usize| scene.particles[bodies[index]].fixed;
     match (fixed(0), fixed(1), fixed(2)) {
         (false, false, false) => FixedOfThree::None,
@@ -182,13 +182,13 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
 
 /// Returns why a pair does not collide. It follows from the signs of the pair's polynomials at a few times of this step
 /// and the next.
-pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
+pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     const SAMPLE_TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
-        range
-            .map(|time| f64::from(time) / f64::from(SAMPLE_TIMES))
-            .any(|time| polynomials.iter().enumerate().all(|(index, one)| positive(one, time) != (index == left_out)))
+        range.map(|time| f64::from(time) / f64::from(SAMPLE_TIMES)).any(|time| {
+            polynomials.iter().enumerate().all(|(index, polynomial)| positive(polynomial, time) != (index == left_out))
+        })
     };
     let approach = polynomials.len().saturating_sub(1);
     let is_edge = kind == PairKind::ParticleEdge;

@@ -13,14 +13,14 @@ use fosssim_model::{assignments::CollisionType, sim::PairKind};
 pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
     match (outcome.parity.overall, fair.verdict) {
-        (Overall::Failed, FairVerdict::Accepted) => Some(explain_strictness(outcome, fair)),
-        (Overall::Passed, FairVerdict::Rejected) => Some(explain_laxness(outcome, fair)),
+        (Overall::Failed, FairVerdict::Accepted) => Some(explain_parity_rejection(outcome, fair)),
+        (Overall::Passed, FairVerdict::Rejected) => Some(explain_parity_acceptance(outcome, fair)),
         _ => None,
     }
 }
 
 /// Returns the reason why parity rejects a trace that fair accepts.
-fn explain_strictness(outcome: &Outcome, fair: &Judgement) -> Cause {
+fn explain_parity_rejection(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Only some borderline decisions are kept as examples, so this one may be missing.
     let is_borderline = fair.borderline > fair.borderline_examples.len() as u64
@@ -51,7 +51,7 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 }
 
 /// Returns the reason why parity accepts a trace that fair rejects.
-fn explain_laxness(outcome: &Outcome, fair: &Judgement) -> Cause {
+fn explain_parity_acceptance(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
         Some(FairRefusal::TrailingBytes) if fair.findings.counts.total() == 0 => return Cause::TrailingBytes,

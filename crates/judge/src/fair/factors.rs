@@ -38,7 +38,7 @@ impl FactorStatistics {
     }
 
     /// Adds `count` factors of 1.
-    pub(super) fn add_ones(&mut self, count: u64) {
+    pub(super) fn add_unit_factors(&mut self, count: u64) {
         if count > 0 {
             (self.least, self.greatest) = (self.least.min(1.0), self.greatest.max(1.0));
             self.count += count;

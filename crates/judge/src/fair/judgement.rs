@@ -113,7 +113,7 @@ impl JudgementBuilder {
             return pending.finding(self.factors_of(kind).range().filter(|range| is_constant(*range))?);
         }
         let mut factors = self.factors[kind][number];
-        factors.add_ones(self.identical_polynomials[kind][number]);
+        factors.add_unit_factors(self.identical_polynomials[kind][number]);
         let usual_range = factors.usual_range().or_else(|| self.claimed_factors[kind][number].usual_range());
         pending.finding(usual_range.unwrap_or([1.0; 2]))
     }
@@ -123,7 +123,7 @@ impl JudgementBuilder {
         let mut all = FactorStatistics::default();
         for (factors, same) in self.factors[kind].iter().zip(self.identical_polynomials[kind]) {
             all.add(factors);
-            all.add_ones(same);
+            all.add_unit_factors(same);
         }
         all
     }

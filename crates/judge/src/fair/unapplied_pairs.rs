@@ -50,13 +50,13 @@ pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &S
     let context = Context::new(scene);
     let tolerances = Tolerances::from_context(&context, own, None);
     let Some(near) = NearPairs::find(scene, &tolerances, before, own, logged) else { return Vec::new() };
-    let wrong = near.candidates.iter().filter_map(|one| {
-        let times = match one.excess? {
+    let wrong = near.candidates.iter().filter_map(|candidate| {
+        let times = match candidate.excess? {
             excess if excess < 0.0 => 0,
             excess if excess > 0.0 => 2,
             _ => 1,
         };
-        Some((one.pair, times))
+        Some((candidate.pair, times))
     });
     wrong.chain(near.right_pairs.iter().map(|pair| (*pair, 1))).collect()
 }

@@ -14,19 +14,19 @@ use fosssim_num::{
 #[derive(Debug, Default)]
 pub(crate) struct PendingFindings {
     runs: Vec<(FindingKind, u32)>,
-    firsts: Vec<Finding>,
+    first_findings: Vec<Finding>,
 }
 
 impl PendingFindings {
     /// Removes all findings.
     pub(crate) fn clear(&mut self) {
         self.runs.clear();
-        self.firsts.clear();
+        self.first_findings.clear();
     }
 
     fn record(&mut self, kind: FindingKind, finding: impl FnOnce() -> Finding) {
-        if !self.firsts.iter().any(|first| first.kind() == kind) {
-            self.firsts.push(finding());
+        if !self.first_findings.iter().any(|first| first.kind() == kind) {
+            self.first_findings.push(finding());
         }
         match self.runs.last_mut() {
             Some((last, count)) if *last == kind => *count = count.saturating_add(1),
@@ -82,7 +82,7 @@ impl PendingFindings {
             result.remarks.push(Remark::Polynomials(kind, count));
             result.counts.add(kind, u64::from(count));
         }
-        result.first_findings.append(&mut self.firsts);
+        result.first_findings.append(&mut self.first_findings);
     }
 }
 

@@ -69,7 +69,9 @@ fn main() -> anyhow::Result<ExitCode> {
     let (slowest, row, scene) = rows
         .iter()
         .zip(&results)
-        .flat_map(|(row, outcomes)| outcomes.iter().zip(&scenes).map(|(one, scene)| (one.1, row.id, &scene.name)))
+        .flat_map(|(row, outcomes)| {
+            outcomes.iter().zip(&scenes).map(|(outcome, scene)| (outcome.1, row.id, &scene.name))
+        })
         .max()
         .context("no traces")?;
     let wrong: Vec<_> = rows.into_iter().zip(&results).filter(|(row, _)| row.kind == RowKind::Wrong).collect();
@@ -82,8 +84,10 @@ fn main() -> anyhow::Result<ExitCode> {
 
 /// Counts the recognized mistakes, and the traces.
 fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
-    let best = |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|one| is(&one.0))).count();
-    let all = |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|one| is(&one.0)).count();
+    let best =
+        |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|outcome| is(&outcome.0))).count();
+    let all =
+        |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|outcome| is(&outcome.0)).count();
     println!(
         "\nmistakes: {}; first on their best scene: {}; first or the same as the first: {}",
         wrong.len(),

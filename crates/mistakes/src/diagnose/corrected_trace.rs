@@ -22,7 +22,10 @@ pub struct CorrectedTrace {
 /// is replaced, because the other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
-    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreement(own, one));
+    let of_all = likely
+        .iter()
+        .filter(|explanation| !explanation.is_not_finite())
+        .flat_map(|explanation| find_agreement(own, explanation));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
         return CorrectedTrace {
@@ -38,12 +41,12 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
 /// Returns the explanations of a trace. Those of polynomials that nothing explains in all traces become one, which says
 /// so.
 fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Explanation> {
-    let unexplained = likely.iter().find_map(|one| match &one.topic {
+    let unexplained = likely.iter().find_map(|explanation| match &explanation.topic {
         ExplanationTopic::Polynomials { subjects, found: PolynomialEvidence::Nothing } => Some(subjects),
         _ => None,
     });
-    let is_contradicted = |one: &Explanation| {
-        let subjects = one.subjects();
+    let is_contradicted = |explanation: &Explanation| {
+        let subjects = explanation.subjects();
         !subjects.is_empty() && unexplained.is_some_and(|all| subjects.iter().all(|subject| all.contains(subject)))
     };
     let (contradicted, mut kept): (Vec<Explanation>, Vec<Explanation>) = own.iter().cloned().partition(is_contradicted);
@@ -77,18 +80,19 @@ fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation>
         return own.iter().filter(|explanation| likely.same_as.contains(&explanation.key)).cloned().collect();
     }
     let shown = own.iter().find(|explanation| is_named_in(likely, std::slice::from_ref(explanation)));
-    let as_shown = |one: &Explanation| {
+    let as_shown = |explanation: &Explanation| {
         // Steps are counted for known mistakes, and polynomials for guesses about polynomials.
         let has_same_counts =
-            matches!(one.topic, ExplanationTopic::Mistake) == matches!(likely.topic, ExplanationTopic::Mistake);
-        let (reproduced, samples) = if has_same_counts { (one.reproduced, one.samples) } else { (0, 0) };
-        let about = match (&one.topic, &likely.topic) {
+            matches!(explanation.topic, ExplanationTopic::Mistake) == matches!(likely.topic, ExplanationTopic::Mistake);
+        let (reproduced, samples) =
+            if has_same_counts { (explanation.reproduced, explanation.samples) } else { (0, 0) };
+        let about = match (&explanation.topic, &likely.topic) {
             (ExplanationTopic::Pairs(own), ExplanationTopic::Pairs(all)) => {
                 ExplanationTopic::Pairs(WrongPairs { first: own.first, ..all.clone() })
             }
             (_, about) => about.clone(),
         };
-        Explanation { reproduced, samples, topic: about, example: one.example.clone(), ..likely.clone() }
+        Explanation { reproduced, samples, topic: about, example: explanation.example.clone(), ..likely.clone() }
     };
     shown.map(as_shown).into_iter().collect()
 }
@@ -121,7 +125,7 @@ mod tests {
         let other = named("pp-no-two", &[], (1, 4));
         let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
         let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
-        assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
+        assert_eq!(likely.iter().map(|explanation| explanation.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
         let of_first = correct_trace(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed_count, of_first.explanations.len()), (1, 1));
         let explanation = &of_first.explanations[0];

@@ -47,25 +47,28 @@ impl OpenTrace {
 
 /// Returns the symptoms of a trace without the refuted statements.
 pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
-    let of_one = |one: &Explanation| {
-        if is_refuted(&one.key) && find(&one.key).is_none() {
+    let of_one = |explanation: &Explanation| {
+        if is_refuted(&explanation.key) && find(&explanation.key).is_none() {
             return None;
         }
-        let mut allowed = alternative_statements(one);
+        let mut allowed = alternative_statements(explanation);
         allowed.retain(|word, _| !is_refuted(word));
-        let mut same_as: Vec<String> = one.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
-        let is_reported = allowed.contains_key(&one.statement());
-        let one = match same_as.iter().position(|key| find(key).is_some()) {
-            _ if is_reported => Explanation { same_as, ..one.clone() },
-            Some(place) => explain_by_row(one, find(&same_as.remove(place))?, same_as),
+        let mut same_as: Vec<String> = explanation.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
+        let is_reported = allowed.contains_key(&explanation.statement());
+        let explanation = match same_as.iter().position(|key| find(key).is_some()) {
+            _ if is_reported => Explanation { same_as, ..explanation.clone() },
+            Some(place) => explain_by_row(explanation, find(&same_as.remove(place))?, same_as),
             None => {
                 let row = allowed.keys().find_map(|word| find(word))?;
-                explain_by_row(one, row, same_as)
+                explain_by_row(explanation, row, same_as)
             }
         };
-        Some(Symptom { explanation: one, allowed_statements: allowed })
+        Some(Symptom { explanation, allowed_statements: allowed })
     };
-    list.iter().filter(|one| one.is_about_program() || !one.claims.is_empty()).filter_map(of_one).collect()
+    list.iter()
+        .filter(|explanation| explanation.is_about_program() || !explanation.claims.is_empty())
+        .filter_map(of_one)
+        .collect()
 }
 
 /// The evidence for one statement.
@@ -114,7 +117,8 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 evidence.symptoms.insert((number, place));
                 evidence.leading_traces += usize::from(place == 0 && *word == statement);
                 // If several explanations have the same statement, the one with the longest exact form is used.
-                let rank_of = |one: &Explanation| (one.is_exhaustive(), !one.details.is_empty());
+                let rank_of =
+                    |explanation: &Explanation| (explanation.is_exhaustive(), !explanation.details.is_empty());
                 let says_more = |reported: &Explanation| rank_of(reported) < rank_of(&symptom.explanation);
                 if *word == statement && evidence.reported.is_none_or(says_more) {
                     evidence.reported = Some(&symptom.explanation);
@@ -136,16 +140,20 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
         for trace in open {
             let reported = evidence.reported;
-            let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.explanation.key == one.key);
-            evidence.related_traces +=
-                usize::from(reported.filter(|one| one.names_stage()).is_some_and(|one| is_kin(&one)));
+            let is_kin = |explanation: &&Explanation| {
+                trace.symptoms.iter().any(|other| other.explanation.key == explanation.key)
+            };
+            evidence.related_traces += usize::from(
+                reported
+                    .filter(|explanation| explanation.names_stage())
+                    .is_some_and(|explanation| is_kin(&explanation)),
+            );
             evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;
-            } else if reported
-                .or(as_told.as_ref())
-                .is_some_and(|reported| trace.symptoms.iter().any(|one| contradicts(&one.explanation, reported)))
-            {
+            } else if reported.or(as_told.as_ref()).is_some_and(|reported| {
+                trace.symptoms.iter().any(|symptom| contradicts(&symptom.explanation, reported))
+            }) {
                 evidence.contradicting_traces += 1;
             }
         }
@@ -173,8 +181,9 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
 pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = collect_evidence(open);
     let is_known = |word: &str| find(word).is_some();
-    let is_likely =
-        |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.reported.is_some() || is_known(word));
+    let is_likely = |(word, support): &(&&str, &Support<'_>)| {
+        !support.is_denied() && (support.reported.is_some() || is_known(word))
+    };
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
         let by_known = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
@@ -209,7 +218,7 @@ fn merge_explanations(reported: &Explanation, open: &[OpenTrace]) -> Explanation
     let agreeing: Vec<&Symptom> = open
         .iter()
         .flat_map(|trace| &trace.symptoms)
-        .filter(|one| one.allowed_statements.contains_key(&statement))
+        .filter(|symptom| symptom.allowed_statements.contains_key(&statement))
         .collect();
     for symptom in agreeing.iter().filter(|symptom| symptom.explanation.statement() == statement) {
         if let ExplanationTopic::Polynomials { subjects: theirs, .. } = &symptom.explanation.topic {

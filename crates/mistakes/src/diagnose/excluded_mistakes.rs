@@ -21,12 +21,15 @@ const MAX_TRACES: usize = 6;
 const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
 /// Returns the keys of named mistakes in code that a student of this milestone does not write.
-fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
+fn supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
-        for key in list.iter().flat_map(|one| alternative_statements(one).into_keys().chain([one.key.clone()])) {
+        for key in list
+            .iter()
+            .flat_map(|explanation| alternative_statements(explanation).into_keys().chain([explanation.key.clone()]))
+        {
             let is_own = match find(&key) {
-                Some(row) => is_written_by_student(row, whose),
+                Some(row) => is_written_by_student(row, assignment),
                 None => continue,
             };
             *named.entry(key).or_default() |= is_own;
@@ -38,7 +41,8 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
 /// Returns whether, for each trace with values that are not finite, one of the likely mistakes alone leads to such
 /// values.
 fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
-    let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
+    let mistakes =
+        likely.iter().filter(|explanation| explanation.is_proven()).filter_map(|explanation| find(&explanation.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
     let ends = |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
@@ -61,14 +65,18 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     if !is_of_state && (stage.is_none() || is_empty_stage(row)) {
         return false;
     }
-    let explains = |list: &[Explanation]| list.iter().any(|one| alternative_statements(one).get(key) == Some(&true));
-    let is_of_stage = |one: &Explanation| one.names_stage() && (stage.is_none() || one.stage() == stage);
-    let is_refuted = |one: &Explanation| {
-        find(&one.key).is_some_and(|row| refuted.contains(&one.key) && area_stage(row.area) == stage)
+    let explains = |list: &[Explanation]| {
+        list.iter().any(|explanation| alternative_statements(explanation).get(key) == Some(&true))
     };
-    let is_other = |one: &Explanation| one.is_complete() && !is_refuted(one);
+    let is_of_stage =
+        |explanation: &Explanation| explanation.names_stage() && (stage.is_none() || explanation.stage() == stage);
+    let is_refuted = |explanation: &Explanation| {
+        find(&explanation.key).is_some_and(|row| refuted.contains(&explanation.key) && area_stage(row.area) == stage)
+    };
+    let is_other = |explanation: &Explanation| explanation.is_complete() && !is_refuted(explanation);
     let is_open = |list: &[Explanation]| {
-        let is_wrong = |one: &Explanation| is_of_stage(one) || is_refuted(one) || one.key == key;
+        let is_wrong =
+            |explanation: &Explanation| is_of_stage(explanation) || is_refuted(explanation) || explanation.key == key;
         !explains(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
     };
     let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
@@ -86,30 +94,41 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.
-pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
+pub fn refuted_keys(
+    assignment: Option<Assignment>,
+    wrong: &[(&Scene, &[Explanation])],
+    right: &[&Scene],
+) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
     let can_show = |scene: &Scene, key: &str| {
-        let is_named = |list: &[Explanation]| list.iter().any(|one| alternative_statements(one).contains_key(key));
+        let is_named =
+            |list: &[Explanation]| list.iter().any(|explanation| alternative_statements(explanation).contains_key(key));
         find(key).is_none_or(|row| row.area != Area::Integrator)
             || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
     };
     let is_denied = |key: &str, work: &Cell<u64>| {
         right.iter().any(|scene| can_show(scene, key) && mistake_is_visible_within(scene, key, work))
     };
-    let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
+    let mut refuted: Vec<String> = assignment.map_or_else(Vec::new, |assignment| supplied_keys(assignment, wrong));
     loop {
         let likely = explain_together(traces(), &refuted);
         // An explanation of unfinished work includes all its empty stages.
-        let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
-        let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
+        let stages = likely
+            .iter()
+            .filter(|explanation| explanation.is_unfinished())
+            .flat_map(|explanation| &explanation.same_as);
+        let mut keys =
+            likely.iter().map(|explanation| &explanation.key).chain(stages).filter(|key| !refuted.contains(key));
         let others: Vec<&str> = keys.clone().map(String::as_str).collect();
         let is_false = |key: &str| is_denied(key, &Cell::new(0)) || is_contradicted(key, &others, wrong, &refuted);
         match keys.find(|key| is_false(key)).cloned() {
             Some(key) => refuted.push(key),
             None => {
                 let work = Cell::new(0);
-                let rivals =
-                    likely.iter().filter(|one| one.topic == ExplanationTopic::Mistake).flat_map(|one| &one.same_as);
+                let rivals = likely
+                    .iter()
+                    .filter(|explanation| explanation.topic == ExplanationTopic::Mistake)
+                    .flat_map(|explanation| &explanation.same_as);
                 refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
                 if likely.iter().any(Explanation::is_not_finite) && are_non_finite_values_explained(&likely, wrong) {
                     refuted.push(Explanation::NOT_FINITE.to_owned());

@@ -55,13 +55,13 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     let mut polynomials = polynomial::explain(&detections);
     if known.iter().any(|explanation| find(&explanation.key).is_some_and(is_empty_stage)) {
-        polynomials.retain(|one| !one.reports_missing_polynomials());
+        polynomials.retain(|explanation| !explanation.reports_missing_polynomials());
     }
     for explanation in &mut known {
         let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.pair_kind());
         if let Some(kind) = of_kind {
             let is_of_kind = |claim: &&String| {
-                let kinds = PairKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
+                let kinds = PairKind::ALL.into_iter().filter(|candidate| kind.is_none_or(|kind| kind == *candidate));
                 kinds.flat_map(Subject::all_of_kind).any(|subject| claim.starts_with(&format!("{subject:?}/")))
             };
             let claims = polynomials.iter().flat_map(|explanation| &explanation.claims);
@@ -88,10 +88,11 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         polynomials.clear();
     }
     // A known mistake may explain all polynomials even if another mistake prevents it from explaining whole steps.
-    known.retain(|one| {
-        let is_reported =
-            |other: &Explanation| other.is_complete() && find(&one.key).is_some_and(|row| has_same_meaning(other, row));
-        one.is_complete() || !polynomials.iter().any(is_reported)
+    known.retain(|explanation| {
+        let is_reported = |other: &Explanation| {
+            other.is_complete() && find(&explanation.key).is_some_and(|row| has_same_meaning(other, row))
+        };
+        explanation.is_complete() || !polynomials.iter().any(is_reported)
     });
     let open = open.filter(|_| !is_contest);
     let stage = open.and_then(|scan| {

@@ -32,7 +32,8 @@ pub fn explain_together<'a>(
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
     // A stage that is visible in one trace is not empty, even if it is not visible in other traces.
-    let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.contradicted_keys).collect();
+    let denied: BTreeSet<&String> =
+        traces.iter().copied().flatten().flat_map(|explanation| &explanation.contradicted_keys).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
         .iter()
@@ -92,23 +93,24 @@ pub fn explain_together<'a>(
 /// Drops names of different mistakes in one quantity that no trace shows together. A program makes one mistake there,
 /// which resembles these; the stage is reported instead.
 fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
-    let term = |one: &Explanation| match find(&one.key)?.mistake {
+    let term = |explanation: &Explanation| match find(&explanation.key)?.mistake {
         Mistake::Step(StepMistake::Edit(edit)) => Some(edit.term),
         _ => None,
     };
-    let is_shown = |list: &[Explanation], one: &Explanation| list.iter().any(|other| other.key == one.key);
+    let is_shown =
+        |list: &[Explanation], explanation: &Explanation| list.iter().any(|other| other.key == explanation.key);
     let are_rivals = |one: &Explanation, other: &Explanation| {
         let is_same_term = one.key != other.key && term(one).is_some() && term(one) == term(other);
         is_same_term && !traces.iter().any(|list| is_shown(list, one) && is_shown(list, other))
     };
     let [found, empty] = lists;
     let all = [found.as_slice(), empty.as_slice()].concat();
-    let has_rival = |one: &Explanation| all.iter().any(|other| are_rivals(one, other));
+    let has_rival = |explanation: &Explanation| all.iter().any(|other| are_rivals(explanation, other));
     found.retain(|explanation| !has_rival(explanation));
     empty.retain(|explanation| !has_rival(explanation));
     if found.len() + empty.len() < all.len() {
         let stages = || traces.iter().copied().flatten().filter(|explanation| explanation.names_stage());
-        let agreeing = |one: &Explanation| stages().filter(|other| other.key == one.key).count();
+        let agreeing = |explanation: &Explanation| stages().filter(|other| other.key == explanation.key).count();
         found.extend(stages().max_by_key(|explanation| agreeing(explanation)).cloned());
     }
 }
@@ -116,14 +118,16 @@ fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
 fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|explanation| explanation.is_not_finite()));
-    let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
+    let agreeing =
+        |explanation: &Explanation| ends().filter(|other| other.statement() == explanation.statement()).count();
     let likeliest = ends().rev().max_by_key(|explanation| agreeing(explanation))?;
     let mut likeliest = likeliest.clone();
     if let ExplanationTopic::NotFinite(found) = &mut likeliest.topic
         && ends().count() > 1
     {
         found.step = None;
-        found.recovers = ends().any(|one| matches!(&one.topic, ExplanationTopic::NotFinite(other) if other.recovers));
+        found.recovers = ends()
+            .any(|explanation| matches!(&explanation.topic, ExplanationTopic::NotFinite(other) if other.recovers));
     }
     Some(likeliest)
 }
@@ -137,8 +141,9 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
     let subjects = one.subjects();
     // The course supplies the approach polynomial of particles and edges.
     let is_supplied = |subject: &&Subject| **subject != Subject::EdgeApproach;
-    let is_all =
-        |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_supplied).all(|one| subjects.contains(one));
+    let is_all = |kind: &PairKind| {
+        Subject::all_of_kind(*kind).iter().filter(is_supplied).all(|subject| subjects.contains(subject))
+    };
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
         let of_kind = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
@@ -155,7 +160,9 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
 /// Returns one explanation for several empty stages. Their keys are in [`Explanation::same_as`]. A stage with another
 /// explanation is reported separately.
 fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
-    let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
+    let has_rival = |explanation: &Explanation| {
+        explanation.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row))
+    };
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
     if sure.len() < 2 {
         return sure.into_iter().chain(doubted).collect();
@@ -180,23 +187,26 @@ fn explain_wrong_polynomials(
 ) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
-        let is_formula_row = |one: &&Explanation| find(&one.key).is_some_and(|row| is_formula_area(row.area));
-        let of_polynomials =
-            list.iter().filter(|one| matches!(one.topic, ExplanationTopic::Polynomials { .. }) || is_formula_row(one));
+        let is_formula_row =
+            |explanation: &&Explanation| find(&explanation.key).is_some_and(|row| is_formula_area(row.area));
+        let of_polynomials = list.iter().filter(|explanation| {
+            matches!(explanation.topic, ExplanationTopic::Polynomials { .. }) || is_formula_row(explanation)
+        });
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
         let subjects = subjects.into_iter().filter(|subject| !is_unwritten(subject));
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
     let most = wrong.values().copied().max()?;
-    let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
+    let named_in = |explanation: &Explanation| traces.iter().filter(|list| is_named_in(explanation, list)).count();
     let is_reported = found.iter().any(|explanation| !explanation.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
     // A fault in only a few traces may follow from another mistake.
     if is_reported || most * 2 <= traces.len() {
         return None;
     }
-    let subjects: Vec<Subject> = wrong.into_iter().filter(|(_, count)| *count == most).map(|(one, _)| one).collect();
-    let guesses = traces.iter().flatten().filter_map(|one| match &one.topic {
+    let subjects: Vec<Subject> =
+        wrong.into_iter().filter(|(_, count)| *count == most).map(|(subject, _)| subject).collect();
+    let guesses = traces.iter().flatten().filter_map(|explanation| match &explanation.topic {
         ExplanationTopic::Polynomials { subjects: theirs, found: PolynomialEvidence::Guess(guess) }
             if *theirs == subjects =>
         {
@@ -229,32 +239,33 @@ fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
 fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
-    let has_details = |one: &Explanation| {
-        if are_needed && matches!(one.topic, ExplanationTopic::Mistake) {
+    let has_details = |explanation: &Explanation| {
+        if are_needed && matches!(explanation.topic, ExplanationTopic::Mistake) {
             return false;
         }
-        let theirs = one.subjects();
+        let theirs = explanation.subjects();
         // If a trace does not show a polynomial of a known mistake, that mistake may be the cause of a reported guess.
-        let is_guess = matches!(one.topic, ExplanationTopic::Polynomials { .. });
+        let is_guess = matches!(explanation.topic, ExplanationTopic::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::pair_kind);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
             Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
             None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
         };
-        let in_one_stage = match (&one.topic, &next.topic) {
-            (ExplanationTopic::Stage(one), ExplanationTopic::Stage(next)) => {
-                let are_of_two_kinds = one.kind().zip(next.kind()).is_some_and(|(one, next)| one != next);
-                one.stage() == next.stage() && !are_of_two_kinds
+        let in_one_stage = match (&explanation.topic, &next.topic) {
+            (ExplanationTopic::Stage(explanation), ExplanationTopic::Stage(next)) => {
+                let are_of_two_kinds =
+                    explanation.kind().zip(next.kind()).is_some_and(|(explanation, next)| explanation != next);
+                explanation.stage() == next.stage() && !are_of_two_kinds
             }
-            (_, ExplanationTopic::Stage(fault)) => find(&one.key).is_some_and(|row| {
+            (_, ExplanationTopic::Stage(fault)) => find(&explanation.key).is_some_and(|row| {
                 fault.areas().contains(&row.area) || area_stage(row.area).is_some_and(|stage| stage <= fault.stage())
             }),
             (ExplanationTopic::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
         };
         let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();
-        let of_vectors = find(&one.key).filter(is_of_vector).zip(find(&next.key).filter(is_of_vector));
-        let in_one_vector = of_vectors.is_some_and(|(one, next)| one.pair_kind() == next.pair_kind());
+        let of_vectors = find(&explanation.key).filter(is_of_vector).zip(find(&next.key).filter(is_of_vector));
+        let in_one_vector = of_vectors.is_some_and(|(explanation, next)| explanation.pair_kind() == next.pair_kind());
         in_one_formula || in_one_stage || in_one_vector
     };
     found.iter().any(has_details)
@@ -278,10 +289,13 @@ fn drop_consequences(open: &mut Vec<OpenTrace>) {
 fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
-    let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
-    let kind_of = |one: &Explanation| if let ExplanationTopic::Stage(fault) = &one.topic { fault.kind() } else { None };
+    let is_of_it = |explanation: &Explanation| explanation.stage() == Some(earliest);
+    let kind_of = |explanation: &Explanation| {
+        if let ExplanationTopic::Stage(fault) = &explanation.topic { fault.kind() } else { None }
+    };
     let observed = |row: &Row| {
-        let is_of_kind = |one: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(one) == Some(kind));
+        let is_of_kind =
+            |explanation: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(explanation) == Some(kind));
         let shows = |trace: &&OpenTrace| {
             trace.symptoms.iter().any(|symptom| is_of_it(&symptom.explanation) && is_of_kind(&symptom.explanation))
         };
@@ -293,7 +307,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     // An explanation of a fault in the stage replaces explanations that only name the stage.
     let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
     // If pairs are in another order, the polynomials of one pair are in the place of another pair's.
-    let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
+    let is_misread = |explanation: &Explanation| find(&explanation.key).is_none() && explanation.stage().is_none();
     let has_order = all().any(|explanation| explanation.key == Explanation::ORDER);
     for trace in open.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
@@ -329,7 +343,9 @@ fn is_confirmed(open: &[OpenTrace], statement: &str) -> bool {
 fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
     let statement = next.statement();
     let naming = |is_covered: bool| {
-        open.iter().filter(|one| one.is_covered == is_covered && one.allows_complete_statement(&statement)).count()
+        open.iter()
+            .filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&statement))
+            .count()
     };
     if next.names_stage() {
         return naming(false) > 1 && !next.is_vague();

@@ -20,18 +20,21 @@ pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>)
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
         let is_stage = |key: &String| mistake.same_as.contains(key);
-        return explanations.iter().any(|one| is_stage(&one.key) || one.same_as.iter().any(is_stage));
+        return explanations
+            .iter()
+            .any(|explanation| is_stage(&explanation.key) || explanation.same_as.iter().any(is_stage));
     }
     if let (true, ExplanationTopic::Polynomials { subjects, found }) = (mistake.is_unexplained(), &mistake.topic) {
-        let says_so = |one: &Explanation| match (found, &one.topic) {
+        let says_so = |explanation: &Explanation| match (found, &explanation.topic) {
             (
                 PolynomialEvidence::Guess(guess),
                 ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(theirs), .. },
             ) => guess == theirs,
             (found, _) => *found == PolynomialEvidence::Nothing,
         };
-        let is_about = |one: &Explanation| one.subjects().iter().any(|subject| subjects.contains(subject));
-        return explanations.iter().any(|one| is_about(one) && says_so(one));
+        let is_about =
+            |explanation: &Explanation| explanation.subjects().iter().any(|subject| subjects.contains(subject));
+        return explanations.iter().any(|explanation| is_about(explanation) && says_so(explanation));
     }
     let statement = mistake.statement();
     explanations.iter().any(|explanation| alternative_statements(explanation).contains_key(&statement))

@@ -161,7 +161,8 @@ fn find_stage_in_single_pass(
     polynomial: Option<(usize, f64)>,
 ) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
-    let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));
+    let place =
+        |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|candidate| candidate == pair));
     let contact = end.impulses.iter().find_map(|contact| Some((place(contact), find_non_finite_impulse(contact)?)));
     let Some((index, value)) = polynomial else { return contact.map(|(_, value)| (NanStage::ContactVectors, value)) };
     let Some((at, pair)) = locate_pair(scene, index) else { return Some((NanStage::Detection(None), value)) };

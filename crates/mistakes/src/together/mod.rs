@@ -136,7 +136,7 @@ pub fn count_explained_scenes(grade: &Grade, mistake: &Explanation) -> usize {
 pub fn reconcile_explanations(grade: &mut Grade) {
     let speak_together = !grade.refuted_keys.is_empty() || find_likely_mistake(grade).is_some();
     let likely = if speak_together { find_likely_mistakes(grade) } else { Vec::new() };
-    let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
+    let likely: Vec<Explanation> = likely.into_iter().map(|(explanation, _)| explanation).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
         let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted_keys);
         (scene.corrected_explanations, scene.agreed_count) = (of_scene.explanations, of_scene.agreed_count);

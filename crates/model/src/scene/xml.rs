@@ -263,8 +263,10 @@ fn read_duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
 }
 
 fn read_integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
-    let (integrator, time_step) =
-        (fields.choice("type", &Integrator::ALL.map(|one| (one.name(), one))), fields.scalar("dt"));
+    let (integrator, time_step) = (
+        fields.choice("type", &Integrator::ALL.map(|integrator| (integrator.name(), integrator))),
+        fields.scalar("dt"),
+    );
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
         fields.report_bad_value("dt", "the time step must be positive; the original makes no step");
     }

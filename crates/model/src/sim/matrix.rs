@@ -3,7 +3,7 @@ use nalgebra::{DMatrix, Matrix2};
 
 /// Adds a block on the diagonal for each of two particles, and subtracts it where the rows of one cross the columns of
 /// the other.
-pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
+pub(crate) fn add_coupling(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
         place += block;
@@ -14,9 +14,9 @@ pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matr
     }
 }
 
-/// Subtracts the block, the opposite of [`couple`]. Calling [`couple`] with the negated block would give a NaN a
-/// different sign.
-pub(crate) fn decouple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
+/// Subtracts the block, the opposite of [`add_coupling`]. Adding the negated block instead would give a NaN a different
+/// sign.
+pub(crate) fn subtract_coupling(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
         place -= block;

@@ -35,9 +35,9 @@ impl<const N: usize> Division<N> {
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ScalarKind {
     /// The formulas are divided by `c`, which is larger.
-    ByC,
+    DividedByC,
     /// The formulas are divided by `d`.
-    ByD,
+    DividedByD,
     /// The factor nearly divides K, and the other scalars are not computed.
     Divides,
 }
@@ -83,7 +83,7 @@ impl<const N: usize> Scalars<N> {
             let r = a / c;
             let s = d / c;
             let g = u * r;
-            scalars.kind = ScalarKind::ByC;
+            scalars.kind = ScalarKind::DividedByC;
             scalars.s = s;
             scalars.g = g;
             scalars.phi = a * r + (y / c + g) * b;
@@ -93,7 +93,7 @@ impl<const N: usize> Scalars<N> {
             let r = a / d;
             let s = c / d;
             let g = u * b;
-            scalars.kind = ScalarKind::ByD;
+            scalars.kind = ScalarKind::DividedByD;
             scalars.s = s;
             scalars.g = g;
             scalars.phi = (a + g) * r + y * (b / d);
@@ -109,8 +109,8 @@ impl<const N: usize> Scalars<N> {
         let (q, w) = (&division.q, &self.w);
         let mut k = Coefficients::default();
         let reference = match self.kind {
-            ScalarKind::ByC => division.b(),
-            ScalarKind::ByD => division.a(),
+            ScalarKind::DividedByC => division.b(),
+            ScalarKind::DividedByD => division.a(),
             ScalarKind::Divides => {
                 k[2..N].copy_from_slice(&w[..N - 2]);
                 return k;
@@ -140,8 +140,8 @@ impl<const N: usize> Scalars<N> {
         let (u, v, a, b) = (division.u, division.v, division.a(), division.b());
         let (alpha, gamma) = match self.kind {
             ScalarKind::Divides => return (0.0, 0.0),
-            ScalarKind::ByD => ((a + g) * s + y, (s + u) * c + v * d),
-            ScalarKind::ByC => (a + u * b + y * s, c + (u + v * s) * d),
+            ScalarKind::DividedByD => ((a + g) * s + y, (s + u) * c + v * d),
+            ScalarKind::DividedByC => (a + u * b + y * s, c + (u + v * s) * d),
         };
         let rho_1 = -k[N - 1] / polynomial[N];
         let rho_2 = -(k[N - 2] + rho_1 * polynomial[N - 1]) / polynomial[N];

@@ -9,7 +9,7 @@ use fosssim_model::assignments::CollisionType;
 /// sufficient then.
 pub(crate) fn advice_lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first_finding::find_first(check) else { return Vec::new() };
-    match check.explanations.iter().find(|one| explanation::is_specific(one)) {
+    match check.explanations.iter().find(|explanation| explanation::is_specific(explanation)) {
         Some(known) if known.names_stage() => explanation::describe_search_area(known).into_iter().collect(),
         Some(_) => Vec::new(),
         None => finding_advice(first, check.outcome.collisions).to_vec(),

@@ -67,7 +67,7 @@ pub(crate) struct Row {
 
 /// The values of a finding side by side, and the remarks above and below them.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct SideBySide {
+pub(crate) struct ComparedValues {
     /// Lines above the table. They give the position in the trace, for readers who inspect its bytes.
     remarks_before: Vec<String>,
     pub(crate) rows: Vec<Row>,
@@ -76,7 +76,7 @@ pub(crate) struct SideBySide {
     original: Option<String>,
 }
 
-impl SideBySide {
+impl ComparedValues {
     fn render_text(&self, style: Style) -> String {
         let lines = |lines: &[String]| lines.iter().map(|line| format!("  {line}\n")).collect::<String>();
         let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
@@ -96,8 +96,8 @@ impl SideBySide {
 }
 
 /// Returns the values that a finding compares.
-pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
-    let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
+pub(crate) fn side_by_side(detail: &FindingDetail) -> ComparedValues {
+    let rows = |rows: Vec<Row>| ComparedValues { rows, ..ComparedValues::default() };
     match detail {
         FindingDetail::MissedCollision { expected } => rows(collision_rows(Some((*expected).into()), None)),
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
@@ -106,7 +106,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
             rows(collision_rows(Some((*expected).into()), Some(*actual)))
         }
-        FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
+        FindingDetail::PolynomialCount { expected, actual, per_pass } => ComparedValues {
             remarks_after: vec![format!("one pass over all pairs has {per_pass}")],
             ..rows(vec![count_row("polynomials", *expected, *actual)])
         },
@@ -143,9 +143,9 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
         | FindingDetail::MixedForms { place } => {
-            SideBySide { remarks_before: vec![describe_logging_pass(place)], ..SideBySide::default() }
+            ComparedValues { remarks_before: vec![describe_logging_pass(place)], ..ComparedValues::default() }
         }
-        _ => SideBySide::default(),
+        _ => ComparedValues::default(),
     }
 }
 
@@ -163,7 +163,7 @@ fn describe_logging_pass(place: &fosssim_judge::PolynomialPlace) -> String {
 }
 
 /// Compares two polynomials power by power. Coefficients that differ after division by the common factor are marked.
-fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
+fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> ComparedValues {
     compare_with_factor(place, expected, actual, find_factor(expected, actual), None)
 }
 
@@ -175,7 +175,7 @@ fn compare_with_factor(
     actual: &[f64],
     factor: f64,
     wrong: Option<usize>,
-) -> SideBySide {
+) -> ComparedValues {
     let coefficient_at = |coefficients: &[f64], power: usize| coefficients.iter().rev().nth(power).copied();
     let powers = expected.len().max(actual.len());
     let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
@@ -197,7 +197,7 @@ fn compare_with_factor(
         "expected values are multiplied by the trace's factor {}; any positive factor is right",
         format_g(factor)
     );
-    SideBySide {
+    ComparedValues {
         remarks_before: vec![describe_logging_pass(place)],
         rows: (0..powers).rev().map(row).collect(),
         remarks_after: if is_one { Vec::new() } else { vec![carried] },
@@ -217,5 +217,9 @@ fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>
             Row { name, expected: value(expected), actual: value(actual), differs: false }
         }
     };
-    vec![row("normal x", |one| one.normal.x), row("normal y", |one| one.normal.y), row("time", |one| one.time)]
+    vec![
+        row("normal x", |contact| contact.normal.x),
+        row("normal y", |contact| contact.normal.y),
+        row("time", |contact| contact.time),
+    ]
 }

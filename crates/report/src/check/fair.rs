@@ -54,7 +54,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &describe_kinds(&fair.findings, style);
     }
     if let Some(cause) = find_cause(outcome) {
-        let (heading, sides) = (style.paint(TextStyle::Notice, "The rule books differ:"), describe_sides(cause));
+        let (heading, sides) = (style.paint(TextStyle::Notice, "The rule books differ:"), describe_acceptance(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
@@ -108,7 +108,7 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
     let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
-        parts if parts.is_empty() => step_share::describe_right(outcome.steps, count),
+        parts if parts.is_empty() => step_share::describe_right_steps(outcome.steps, count),
         parts => parts.join("; "),
     }
 }
@@ -135,7 +135,7 @@ fn format_percent(share: f64) -> String {
 }
 
 /// Returns a sentence about which rule book accepts the trace, and which one rejects it.
-pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
+pub(crate) const fn describe_acceptance(cause: Cause) -> &'static str {
     if cause.is_original_too_strict() {
         "the original rejects this trace, but the fair rules accept it"
     } else {

@@ -52,8 +52,8 @@ pub(super) struct CountedView {
 
 impl CountedView {
     /// Returns the first findings of each kind, and the numbers of findings.
-    pub(super) fn count(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
-        firsts
+    pub(super) fn count(book: Book, first_findings: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
+        first_findings
             .iter()
             .map(|first| Self { count: count(first.kind()), first: FindingView::from_finding(book, first) })
             .collect()

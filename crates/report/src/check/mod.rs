@@ -80,7 +80,7 @@ impl Check<'_> {
 
     /// Returns a sentence about which book accepts the trace; `None` if the rule books agree.
     pub fn difference(&self) -> Option<&'static str> {
-        find_cause(self.outcome).map(fair::describe_sides)
+        find_cause(self.outcome).map(fair::describe_acceptance)
     }
 
     /// Returns the rule book that gives the verdict.

@@ -161,7 +161,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = official_steps(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
         Some(step) => render_step(check, step, style),
-        None => format!("{}\n", style.paint(TextStyle::Strong, &describe_right(check, number))),
+        None => format!("{}\n", style.paint(TextStyle::Strong, &describe_right_steps(check, number))),
     };
     let mut text = find_requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
@@ -172,7 +172,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-fn describe_right(check: &Check<'_>, step: u32) -> String {
+fn describe_right_steps(check: &Check<'_>, step: u32) -> String {
     let outcome = check.outcome;
     let sound = outcome.steps_judged - outcome.damaged_steps;
     match step {

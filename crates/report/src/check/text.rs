@@ -82,7 +82,7 @@ fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(max_shown));
     // The example is left out here, because the first difference below is also an example.
     let has_example = check.tables || find_first(check).is_none();
-    let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
+    let without = |explanation: &Explanation| Explanation { example: None, ..explanation.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
     let mut lines = explain::explanation_texts(&shown, style);
     if !more.is_empty() {
@@ -112,7 +112,9 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no steps, so no step can be wrong".to_owned(),
-        Overall::Passed => format!("{} by the original's rules", step_share::describe_right(outcome.steps, count)),
+        Overall::Passed => {
+            format!("{} by the original's rules", step_share::describe_right_steps(outcome.steps, count))
+        }
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
             format!("no single step of {steps} is wrong, but a residual is above its tolerance")

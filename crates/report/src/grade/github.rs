@@ -110,7 +110,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
             let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, sum(&alike));
         }
         for verdict in [Verdict::Accepted, Verdict::NotRun] {
-            let rest: Vec<_> = grade.scenes().filter(|one| !is_listed(one) && one.verdict == verdict).collect();
+            let rest: Vec<_> = grade.scenes().filter(|scene| !is_listed(scene) && scene.verdict == verdict).collect();
             if !rest.is_empty() {
                 let count = format_count(rest.len() as u64, "scene");
                 let _ = writeln!(text, "| {count} | {verdict} | {} | |", sum(&rest));

@@ -23,7 +23,7 @@ use std::collections::BTreeMap;
 const SCHEMA: u32 = 4;
 
 /// Returns a likely mistake in the words of the other reports.
-fn view_likely(grade: &Grade, mistake: &Explanation) -> ExplanationView {
+fn view_likely_mistake(grade: &Grade, mistake: &Explanation) -> ExplanationView {
     let view = ExplanationView::from(mistake);
     let text = if mistake.is_unexplained() { describe_likely(grade, mistake) } else { view.text };
     ExplanationView { text, ..view }
@@ -94,11 +94,11 @@ view! {
         located: Option<LocatedView> = grade.located_failure.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
         likely_mistake: Option<ExplanationView> =
-            find_likely_mistake(grade).map(|mistake| view_likely(grade, &mistake)),
+            find_likely_mistake(grade).map(|mistake| view_likely_mistake(grade, &mistake)),
         /// Up to three mistakes that together explain the wrong scenes, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
-            find_likely_mistakes(grade).iter().map(|(mistake, _)| view_likely(grade, mistake)).collect(),
+            find_likely_mistakes(grade).iter().map(|(mistake, _)| view_likely_mistake(grade, mistake)).collect(),
         /// For each of the likely mistakes, the points of the scenes that are wrong only because of it.
         #[schemars(length(max = 3))]
         worth: Vec<f64> =

@@ -35,7 +35,7 @@ pub(crate) use json::GradeDocument;
 pub use json::render_lines as json_lines;
 use phrases::describe_repeated_reason;
 pub(crate) use phrases::{
-    count_wrong, describe_likely, describe_worth, describe_wrong_state, detail_likely, head_likely,
+    count_wrong, describe_likely, describe_worth, describe_wrong_state, detail_likely, likely_heading,
 };
 pub use phrases::{
     describe_difference, describe_in_scene, describe_missing_points, find_likely_mistakes, format_optional_points,

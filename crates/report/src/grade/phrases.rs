@@ -29,7 +29,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
 }
 
 /// Returns the heading above likely mistakes. If none of them is known, it only promises what differs.
-pub(crate) fn head_likely(likely: &[(Explanation, usize)]) -> &'static str {
+pub(crate) fn likely_heading(likely: &[(Explanation, usize)]) -> &'static str {
     match likely {
         _ if likely.iter().all(|(mistake, _)| mistake.is_unexplained()) => "What differs",
         [_] => "Likely mistake",
@@ -87,7 +87,7 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
     let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake)).flatten();
     match scene.and_then(find_wrong_state) {
         Some(first) => {
-            let line = words::describe_first(first);
+            let line = words::describe_first_difference(first);
             vec![words::explanation::capitalize(line.trim_start_matches("first difference: "))]
         }
         None => words::explanation::exact_forms(mistake),

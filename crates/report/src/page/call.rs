@@ -156,7 +156,7 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     for own in logged.iter().map(|own| positive_intervals(own)) {
         let intersect =
             |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
-        common = common.iter().flat_map(|one| own.iter().map(move |other| intersect(one, other))).collect();
+        common = common.iter().flat_map(|interval| own.iter().map(move |other| intersect(interval, other))).collect();
         common.retain(|set| set.lo <= set.hi);
     }
     common

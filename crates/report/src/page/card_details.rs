@@ -105,7 +105,7 @@ mod tests {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);
         assert_eq!((&all[..], says.as_str()), (&[CardDetail::Exact; 3][..], ""));
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 10]);
-        let count = |room| all.iter().filter(|one| **one == room).count();
+        let count = |room| all.iter().filter(|detail| **detail == room).count();
         assert!(
             count(CardDetail::Exact) > 0 && count(CardDetail::Rounded) > 0 && count(CardDetail::Pictures) == 0,
             "{all:?}"

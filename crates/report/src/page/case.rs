@@ -147,8 +147,9 @@ impl TraceContent<'_> {
 
     /// Renders the first calls of a list. If `open`, the first one is unfolded.
     fn render_first_calls(&self, calls: &[StepCall<'_>], open: bool) -> String {
-        let call =
-            |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
+        let call = |(number, (step, call)): (usize, &StepCall<'_>)| {
+            call::html(*step, call, self.depth + 2, open && number == 0)
+        };
         let mut out: String = calls.iter().take(MAX_CALLS).enumerate().map(call).collect();
         if calls.len() > MAX_CALLS {
             out += &format!("<p class=\"hint\">{} more are not shown.</p>\n", calls.len() - MAX_CALLS);
@@ -246,9 +247,9 @@ fn format_value(value: Value) -> String {
 /// Renders explanations, each in its own box. If the first wrong values are shown next to them, an explanation's
 /// example is left out. If a wrong state is described, its text replaces all about polynomials that nothing explains.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool, wrong_state: Option<&str>) -> String {
-    let parts = explanations.iter().map(|one| match wrong_state.filter(|_| one.is_unexplained()) {
+    let parts = explanations.iter().map(|explanation| match wrong_state.filter(|_| explanation.is_unexplained()) {
         Some(state) => ExplanationParts { sentence: state.to_owned(), ..ExplanationParts::default() },
-        None => ExplanationParts::new(one, Style::ColorAndSigns),
+        None => ExplanationParts::new(explanation, Style::ColorAndSigns),
     });
     render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }

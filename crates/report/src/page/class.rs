@@ -109,7 +109,7 @@ impl ClassContent<'_> {
 
     /// Returns the numbers of a submission's mistakes, in the form that the filter reads.
     fn mistake_numbers(&self, number: usize) -> String {
-        let mistakes = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
+        let mistakes = self.mistakes.iter().enumerate().filter(|(_, mistake)| mistake.members.contains(&number));
         mistakes.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
     }
 
@@ -117,8 +117,9 @@ impl ClassContent<'_> {
     fn clusters(&self) -> Vec<Cluster<'_>> {
         let grades = self.class.grades;
         // Submissions that nothing explains may be wrong for different reasons.
-        let is_shared = |one: &SharedMistake| one.members.len() > 1 && one.mistake.key != Explanation::UNEXPLAINED;
-        let named = self.mistakes.iter().enumerate().filter(|(_, one)| is_shared(one));
+        let is_shared =
+            |mistake: &SharedMistake| mistake.members.len() > 1 && mistake.mistake.key != Explanation::UNEXPLAINED;
+        let named = self.mistakes.iter().enumerate().filter(|(_, mistake)| is_shared(mistake));
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
             let scene = clearest_scene(first, mistake);

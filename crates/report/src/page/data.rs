@@ -58,8 +58,8 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
         _ => None,
     });
     json!({
-        "scene": markup::show_hidden(case.check.scene),
-        "traceName": case.has_trace.then(|| markup::show_hidden(case.check.trace)),
+        "scene": markup::replace_invisible_characters(case.check.scene),
+        "traceName": case.has_trace.then(|| markup::replace_invisible_characters(case.check.trace)),
         "full": is_full,
         "collision": case.scene.collision.kind().name(),
         "collisionTag": scene::collision_element(case.scene.collision),

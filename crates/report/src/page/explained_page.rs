@@ -5,7 +5,7 @@ use super::{
     grade_page::{self, scene_key},
     render_document, render_template, script, smallest,
 };
-use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first};
+use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first_difference};
 use askama::Template;
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 
@@ -73,8 +73,8 @@ impl ExplainedContent<'_> {
     /// empty, because its card names them.
     fn shared_mistakes(&self) -> impl Iterator<Item = (&Explanation, usize)> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
-        let explained = |one| cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
-        common.iter().filter(|_| cases.len() > 1).map(move |one| (one, explained(one)))
+        let explained = |explanation| cases.iter().filter(|case| is_named_in(explanation, &case.explanations)).count();
+        common.iter().filter(|_| cases.len() > 1).map(move |explanation| (explanation, explained(explanation)))
     }
 
     /// Renders the smallest scenes.

@@ -11,8 +11,8 @@ use crate::{
     grade::{
         change_lines, clearest_scene, count_wrong, describe_difference, describe_extra_points, describe_likely,
         describe_missing_points, describe_speed, describe_worth, describe_wrong_state, detail_likely,
-        find_likely_mistakes, format_optional_points, format_points, format_score, group_by_cause, head_likely,
-        is_listed,
+        find_likely_mistakes, format_optional_points, format_points, format_score, group_by_cause, is_listed,
+        likely_heading,
     },
     number::format_count,
     words::{self, explanation::capitalize},

@@ -5,7 +5,7 @@ use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
 /// Replaces characters that are invisible, or that change the direction of writing, by their code points.
-pub(super) fn show_hidden(raw: &str) -> String {
+pub(super) fn replace_invisible_characters(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
         if c.is_control() && !matches!(c, '\n' | '\t') || is_invisible(c) {
@@ -20,7 +20,7 @@ pub(super) fn show_hidden(raw: &str) -> String {
 /// Escapes visible text for an element or a quoted attribute.
 pub(super) fn escape(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
-    for c in show_hidden(raw).chars() {
+    for c in replace_invisible_characters(raw).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

@@ -1,7 +1,7 @@
 //! The part of a page about the smallest scene for a cause: the scene, both motions, the differing values, and the
 //! computation by hand.
 use super::{Card, case::mistakes, markup::escape, render_template};
-use crate::{smallest::title, words::describe_first};
+use crate::{smallest::title, words::describe_first_difference};
 use askama::Template;
 use fosssim_findings::smallest_scene::SmallestScene;
 

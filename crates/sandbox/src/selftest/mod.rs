@@ -104,7 +104,7 @@ pub fn run(
     folder: &Path,
     report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
-    run_chosen(backend, cc, folder, |_| true, report)
+    run_selected(backend, cc, folder, |_| true, report)
 }
 
 /// Runs the self-test like [`run`], but only for the attacks that `chosen` names.
@@ -112,7 +112,7 @@ pub fn run(
 /// # Errors
 ///
 /// Fails like [`run`].
-pub fn run_chosen(
+pub fn run_selected(
     backend: &Backend,
     cc: &Path,
     folder: &Path,

@@ -24,7 +24,7 @@ use std::{
 
 use super::{
     file_view, namespaces,
-    prepared_run::{HeldResources, PreparedRun},
+    prepared_run::{ExclusiveResources, PreparedRun},
     run::{self, Run},
 };
 use crate::{
@@ -46,7 +46,7 @@ pub(super) fn main() -> ExitCode {
         Ok(ForkSide::Guardian { keeper, held }) => {
             // The pipe from which the grader reads must be closed at the end of the run.
             drop((first, socket));
-            let code = sys::wait_for(keeper).unwrap_or(1);
+            let code = sys::wait_for_exit(keeper).unwrap_or(1);
             drop(held);
             code
         }
@@ -91,7 +91,7 @@ enum ForkSide {
     /// The process outside of the namespaces, which only waits for the keeper.
     Guardian {
         keeper: i32,
-        held: HeldResources,
+        held: ExclusiveResources,
     },
     Keeper(Keeper),
 }
@@ -100,7 +100,7 @@ enum ForkSide {
 fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
     let single_thread = sys::single_thread().map_err(failure_at("fork"))?;
-    let held = HeldResources::take(order)?;
+    let held = ExclusiveResources::take(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
         return Ok(ForkSide::Guardian { keeper, held });
     }
@@ -112,7 +112,7 @@ fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
 
 struct Keeper {
     /// The exclusive resources. Each run uses a copy of their descriptors.
-    resources: Option<HeldResources>,
+    resources: Option<ExclusiveResources>,
     prepared: PreparedRun,
 }
 
@@ -142,7 +142,7 @@ impl Keeper {
             Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
             Ok(Fork::Parent(supervisor)) => {
                 drop(request);
-                let code = sys::wait_for(supervisor).unwrap_or(1);
+                let code = sys::wait_for_exit(supervisor).unwrap_or(1);
                 // If the folder was visible before, it must not be removed.
                 let _ = std::fs::remove_dir(folder);
                 code

@@ -30,7 +30,7 @@ pub(super) enum NamespaceSide {
 /// Fails with the name of the step that failed. The process has then moved only partly, and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<NamespaceSide, Failure> {
     match fork_into_namespaces()? {
-        Fork::Parent(inside) => Ok(NamespaceSide::Outside(sys::wait_for(inside).map_err(failure_at("wait"))?)),
+        Fork::Parent(inside) => Ok(NamespaceSide::Outside(sys::wait_for_exit(inside).map_err(failure_at("wait"))?)),
         Fork::Child => {
             let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
             mounts::unshare(rest).map_err(failure_at("make namespaces"))?;

@@ -12,14 +12,14 @@ use crate::{
 };
 
 /// The exclusive resources of a run on this machine. They are held until the value is dropped.
-pub(super) struct HeldResources {
+pub(super) struct ExclusiveResources {
     /// The run's own user, if it has one.
     pub(super) slot: Option<user_slot::UserSlot>,
     /// The run's control group, if it has one.
     pub(super) group: Option<Group>,
 }
 
-impl HeldResources {
+impl ExclusiveResources {
     /// Takes the exclusive resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);

@@ -135,7 +135,7 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     if killed.is_err() || !group.can_kill() {
         sys::kill(child, libc::SIGKILL)?;
     }
-    sys::wait_for(child)?;
+    sys::wait_for_exit(child)?;
     killed.map(|()| (group.controls(), group.can_kill()))
 }
 
@@ -151,7 +151,7 @@ fn try_namespaces() -> Option<String> {
         if let Fork::Parent(child) = sys::fork()? {
             drop(writer);
             let answer = wire::receive(reader);
-            sys::wait_for(child)?;
+            sys::wait_for_exit(child)?;
             return answer;
         }
         drop(reader);

@@ -22,7 +22,7 @@ use super::{
     group::Group,
     hidden_usage, locks, modes,
     namespaces::{self, NamespaceSide},
-    prepared_run::{HeldResources, PreparedRun},
+    prepared_run::{ExclusiveResources, PreparedRun},
     processes,
     streams::CapturedStream,
     user_slot,
@@ -79,7 +79,7 @@ enum StartedRun {
 fn prepare_run(order: RunOrder, control: File) -> Result<StartedRun, Failure> {
     // In a session of its own, the supervisor does not receive Ctrl-C from the terminal. The grader tells it to stop.
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
-    let held = HeldResources::take(&order)?;
+    let held = ExclusiveResources::take(&order)?;
     if order.layers.namespaces
         && let NamespaceSide::Outside(code) = namespaces::enter(&order)?
     {
@@ -112,7 +112,8 @@ pub(super) struct Run {
     stderr: CapturedStream,
     start_time: Instant,
     main_status: Option<i32>,
-    cause: Option<RunEnd>,
+    /// The reason why the program was killed; `None` if it was not.
+    kill_reason: Option<RunEnd>,
     peak_memory: u64,
     /// The number of bytes of memory that are not resident for any process, at the last check of mappings.
     hidden_memory: u64,
@@ -124,10 +125,10 @@ impl Run {
     pub(super) fn start(
         order: RunOrder,
         control: File,
-        held: HeldResources,
+        held: ExclusiveResources,
         prepared: &PreparedRun,
     ) -> Result<Self, Failure> {
-        let (order, HeldResources { slot, group }) = (Rc::new(order), held);
+        let (order, ExclusiveResources { slot, group }) = (Rc::new(order), held);
         sys::become_reaper().map_err(failure_at("become the reaper"))?;
         let folder: OwnedFd =
             File::open(wire::to_path(&order.folder)).map_err(failure_at("open the working folder"))?.into();
@@ -191,7 +192,7 @@ impl Run {
             shared_waits: SharedWaits::default(),
             start_time: began,
             main_status: None,
-            cause: None,
+            kill_reason: None,
             peak_memory: 0,
             hidden_memory: 0,
             is_orphaned: false,
@@ -256,18 +257,18 @@ impl Run {
         };
         // If the kernel itself blocks a process, the host is at fault. Otherwise the program is at fault for a process
         // that did not end.
-        self.record_cause(
+        self.record_kill_reason(
             left.count > 0 && !left.blocked,
             RunEnd::Violation { call: "none, but the program left processes that did not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.record_cause(out_of_memory, RunEnd::MemoryLimit);
+        self.record_kill_reason(out_of_memory, RunEnd::MemoryLimit);
         let (cpu, largest) = sys::children_usage().map_err(failure_at("read the resource usage"))?;
         let report = Report {
-            cause: self.cause.take(),
+            cause: self.kill_reason.take(),
             status: main_status.unwrap_or(0),
             exec_errno,
-            cpu: cpu.max(self.uncounted_cpu()),
+            cpu: cpu.max(self.uncounted_processor_time()),
             wall,
             peak_memory: largest.max(self.peak_memory),
             exceeds_trace_limit: self.exceeds_trace_limit(),
@@ -284,7 +285,7 @@ impl Run {
     /// Watches the run until the main process has ended, or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK_INTERVAL, Instant::now() + TICK_INTERVAL);
-        while self.main_status.is_none() && self.cause.is_none() && !self.is_orphaned {
+        while self.main_status.is_none() && self.kill_reason.is_none() && !self.is_orphaned {
             let found = sys::poll(
                 [
                     Some(self.control.as_fd()),
@@ -317,7 +318,7 @@ impl Run {
                 Readiness::Ready => self.decide_announcement()?,
                 // No process is left to which the filter applies. The kernel would report this again and again, until
                 // the process is reaped.
-                Readiness::HungUp => self.listener = None,
+                Readiness::Closed => self.listener = None,
             }
             let now = Instant::now();
             if let Some(listener) = &self.listener {
@@ -342,9 +343,9 @@ impl Run {
     }
 
     /// Records why the run must end, if the condition holds and nothing was recorded before.
-    fn record_cause(&mut self, condition: bool, cause: RunEnd) {
-        if condition && self.cause.is_none() {
-            self.cause = Some(cause);
+    fn record_kill_reason(&mut self, condition: bool, reason: RunEnd) {
+        if condition && self.kill_reason.is_none() {
+            self.kill_reason = Some(reason);
         }
     }
 
@@ -352,7 +353,7 @@ impl Run {
     fn run_commands(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) => self.record_cause(true, RunEnd::Cancelled),
+            Ok(1) => self.record_kill_reason(true, RunEnd::Cancelled),
             _ => self.is_orphaned = true,
         }
     }
@@ -425,7 +426,7 @@ impl Run {
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.record_cause(true, RunEnd::Violation { call });
+        self.record_kill_reason(true, RunEnd::Violation { call });
         Ok(())
     }
 
@@ -448,12 +449,12 @@ impl Run {
         let memory = usage.memory + self.hidden_memory;
         self.peak_memory = self.peak_memory.max(memory);
         // A fork bomb exceeds both of these limits.
-        self.record_cause(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
-        self.record_cause(memory > self.order.limits.memory, RunEnd::MemoryLimit);
-        let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.record_cause(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
-        self.record_cause(self.exceeds_trace_limit(), RunEnd::TraceLimit);
-        self.record_cause(self.start_time.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
+        self.record_kill_reason(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
+        self.record_kill_reason(memory > self.order.limits.memory, RunEnd::MemoryLimit);
+        let cpu = (usage.cpu + reaped).max(self.uncounted_processor_time());
+        self.record_kill_reason(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
+        self.record_kill_reason(self.exceeds_trace_limit(), RunEnd::TraceLimit);
+        self.record_kill_reason(self.start_time.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
     /// Returns whether the trace's file is longer than a trace may be.
@@ -465,7 +466,7 @@ impl Run {
 
     /// Returns the control group's processor time if there may be processes that were not reaped, otherwise zero. The
     /// count of a single process is complete, but the count of the group may include earlier runs.
-    fn uncounted_cpu(&self) -> Duration {
+    fn uncounted_processor_time(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
 
@@ -477,7 +478,7 @@ impl Run {
             contents = contents.field_maximum(folder::file_system_usage(self.folder.as_fd()));
         }
         let over = self.exceeds_folder_limits(&contents);
-        self.record_cause(over, RunEnd::FolderLimit);
+        self.record_kill_reason(over, RunEnd::FolderLimit);
         if self.order.is_in_memory && !self.can_hide_memory() {
             return;
         }
@@ -493,7 +494,7 @@ impl Run {
         }
         self.hidden_memory = held.memory;
         let over = self.exceeds_folder_limits(&contents);
-        self.record_cause(over, RunEnd::FolderLimit);
+        self.record_kill_reason(over, RunEnd::FolderLimit);
     }
 
     /// Returns whether the program may have memory that is not resident for any process. This requires files outside of

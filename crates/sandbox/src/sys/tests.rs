@@ -48,5 +48,5 @@ fn a_closed_end_is_distinguished_from_readable_data() {
     drop(writer);
     assert_eq!(look(), Readiness::Ready, "what was written is still to be read");
     io::Read::read_exact(&mut &reader, &mut [0]).unwrap();
-    assert_eq!(look(), Readiness::HungUp);
+    assert_eq!(look(), Readiness::Closed);
 }

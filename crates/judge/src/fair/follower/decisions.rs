@@ -13,7 +13,7 @@ use fosssim_num::vector::Vec2;
 
 /// The result of the reference's own polynomials for a pair whose logged polynomials are right but different.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct OwnImpact {
+pub(super) struct ReferenceImpact {
     /// The objects' time of impact.
     pub time: f64,
     /// Whether the logged polynomials lack leading coefficients that the reference's have.
@@ -27,7 +27,7 @@ impl Follower<'_> {
         let findings = self.judgement.total();
         let own = self.call.own.take();
         if let Some(own) = own {
-            self.review_losses(pair, by_polynomials, own);
+            self.report_losses(pair, by_polynomials, own);
         }
         let decision = match self.pass.stage {
             Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
@@ -54,7 +54,7 @@ impl Follower<'_> {
     /// polynomials, without losses, give the decision `by_own`.
     pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
-        self.call.own = Some(OwnImpact { time, has_losses: false });
+        self.call.own = Some(ReferenceImpact { time, has_losses: false });
         if self.searchable_polynomials(self.call_place(pair).index, pair.kind.polynomial_count()).is_none() {
             return by_own;
         }
@@ -62,10 +62,10 @@ impl Follower<'_> {
         if self.prefers_own { by_own } else { Decision::Miss { time: ImpactTime::Excluded } }
     }
 
-    /// Counts decisions that change because of lost coefficients. Their cause is the factor, not round-off. With some
+    /// Reports a decision that changes because of lost coefficients. Its cause is the factor, not round-off. With some
     /// factors the library keeps coefficients that it drops from the reference's polynomials; then nothing is lost, and
     /// the reference's decision is not used.
-    fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
+    fn report_losses(&mut self, pair: Pair, by_polynomials: Decision, own: ReferenceImpact) {
         if !own.has_losses {
             return;
         }

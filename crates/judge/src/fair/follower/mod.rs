@@ -19,7 +19,7 @@ use crate::{
     contacts::Contacts,
     finding::{Finding, FindingDetail, Part},
 };
-use decisions::OwnImpact;
+use decisions::ReferenceImpact;
 use fosssim_model::{
     scene::Collision,
     sim::{
@@ -82,7 +82,7 @@ pub(super) struct Follower<'a> {
 #[derive(Debug, Default)]
 struct CurrentCall {
     /// The result of the reference's own polynomials, if the logged polynomials are right but different.
-    own: Option<OwnImpact>,
+    own: Option<ReferenceImpact>,
     /// Whether right polynomials lead the root finder to a decision that differs from the reference's.
     is_disputed: bool,
     /// Whether the polynomials are right and complete, and the logged ones exclude an impact.
@@ -287,10 +287,10 @@ impl StepController for Follower<'_> {
                 return;
             }
             let lost = differ && lengths().any(|(own, logged)| logged < own);
-            self.call.own = contact::find_time(polynomials).map(|time| OwnImpact { time, has_losses: lost });
+            self.call.own = contact::find_time(polynomials).map(|time| ReferenceImpact { time, has_losses: lost });
         }
         let Some(searched) = self.searchable_polynomials(index, count) else { return };
-        if let (true, Some(OwnImpact { time, has_losses: false }), Some(CallMotion { motion, .. })) =
+        if let (true, Some(ReferenceImpact { time, has_losses: false }), Some(CallMotion { motion, .. })) =
             (is_right, self.call.own, &self.call.motion)
             && let Some(other) = contact::find_time(&searched[..count])
         {

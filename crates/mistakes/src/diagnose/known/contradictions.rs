@@ -76,8 +76,10 @@ fn is_moving(sample: &KeptStep) -> bool {
 fn leaves_start(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;
-    let differs = |ours: &[f64], one: usize| {
-        length(vector_at(ours, one) - vector_at(end, one)) > CLEAR_TOLERANCE.state * (1.0 + length(vector_at(end, one)))
+    let differs = |ours: &[f64], particle: usize| {
+        length(vector_at(ours, particle) - vector_at(end, particle))
+            > CLEAR_TOLERANCE.state * (1.0 + length(vector_at(end, particle)))
     };
-    (0..end.len() / 2).any(|one| differs(&mid.state.positions, one) && differs(&sample.before.positions, one))
+    (0..end.len() / 2)
+        .any(|particle| differs(&mid.state.positions, particle) && differs(&sample.before.positions, particle))
 }

@@ -77,7 +77,7 @@ pub(super) struct KnownMistakes {
 
 /// Returns the catalogue's explanations of kept steps, and the steps themselves if no mistake explains all of them.
 pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
-    let only = |one: Explanation| KnownMistakes { explanations: vec![one], ..KnownMistakes::default() };
+    let only = |explanation: Explanation| KnownMistakes { explanations: vec![explanation], ..KnownMistakes::default() };
     if let Some(missing) = alignment::find_missing_record(scene, &scan) {
         return only(missing);
     }

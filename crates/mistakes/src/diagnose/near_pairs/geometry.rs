@@ -38,7 +38,7 @@ impl<'a> StepGeometry<'a> {
             before,
             start_positions: State::for_scene(scene).positions,
             largest_size: scene.particles.iter().fold(0.0, |largest, particle| largest.max(2.0 * particle.radius)),
-            corner: boxes.iter().fold(Vec2::repeat(f64::INFINITY), |low, one| low.inf(&one[0])),
+            corner: boxes.iter().fold(Vec2::repeat(f64::INFINITY), |low, bounds| low.inf(&bounds[0])),
             boxes,
         }
     }
@@ -122,7 +122,7 @@ impl<'a> PlacedPair<'a> {
     /// sweep.
     pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
-        let [one, other] = self.boxes().map(|one| one[0][axis]);
+        let [one, other] = self.boxes().map(|bounds| bounds[0][axis]);
         let all = self.geometry.boxes.iter().enumerate().filter(move |(body, _)| !own.contains(body));
         all.map(|(_, one)| *one).filter(move |body| (one.min(other)..=one.max(other)).contains(&body[0][axis]))
     }

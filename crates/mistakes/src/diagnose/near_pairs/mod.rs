@@ -74,7 +74,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
             let placed = PlacedPair { geometry: &moment, pair };
             let counts = &mut wrong.counts_by_kind[pair.kind as usize];
             counts.counts_by_times[times] += 1;
-            let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&placed));
+            let held = variants.iter().zip(&mut counts.traits).filter(|(variant, _)| variant.holds(&placed));
             held.for_each(|(_, counts)| counts[times] += 1);
         }
     }
@@ -93,15 +93,15 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
-    let counts = variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
-    let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
+    let counts = variants().zip(&pairs.traits).map(|(variant, counts)| (variant, wrong - counts[times], counts[1]));
+    let is_telling = |(variant, exceptions, with): &(TraitVariant, u64, u64)| {
         // The probability that this many randomly chosen pairs all have the trait. Pairs of a scene resemble each
         // other, so the larger group counts only as much as the smaller one.
         let chance: f64 =
             (1..=(wrong - exceptions).min(right)).map(|i| (with + i) as f64 / (right + i) as f64).product();
         PAIRS_PER_EXCEPTION * exceptions <= wrong
             && 2 * with <= right
-            && chance * (one.row.variant_count() as f64) < MAX_CHANCE_PROBABILITY
+            && chance * (variant.row.variant_count() as f64) < MAX_CHANCE_PROBABILITY
     };
     let telling: Vec<_> = counts.filter(is_telling).collect();
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
@@ -111,9 +111,9 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
         reported.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         reported.push(one);
     }
-    let as_told = |(one, exceptions, right): (TraitVariant, u64, u64)| PairTrait {
-        description: one.describe(),
-        exact_condition: one.exact_condition(),
+    let as_told = |(variant, exceptions, right): (TraitVariant, u64, u64)| PairTrait {
+        description: variant.describe(),
+        exact_condition: variant.exact_condition(),
         right_pairs: right,
         exceptions,
     };
@@ -124,7 +124,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
 pub(super) fn merge_explanations(reported: &mut [Explanation], traces: &[&[Explanation]]) {
     for one in reported.iter_mut() {
         let ExplanationTopic::Pairs(sum) = &mut one.topic else { continue };
-        let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.topic {
+        let mut all = traces.iter().copied().flatten().filter_map(|explanation| match &explanation.topic {
             ExplanationTopic::Pairs(wrong) => Some(wrong),
             _ => None,
         });

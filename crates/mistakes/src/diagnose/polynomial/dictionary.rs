@@ -37,10 +37,10 @@ impl Dictionary {
         let mut lists: Vec<Vec<usize>> = Vec::new();
         let longest = formula.terms.iter().map(|term| term.letters.len()).max().unwrap_or(1);
         match longest {
-            1 => lists.extend((0..letters.len()).map(|one| vec![one])),
+            1 => lists.extend((0..letters.len()).map(|letter| vec![letter])),
             2 => {
                 lists.extend(two_letter_products(own));
-                lists.extend((0..own).map(|one| vec![one]));
+                lists.extend((0..own).map(|letter| vec![letter]));
                 lists.extend(foreign_products(subject, own));
             }
             _ => lists.extend(three_letter_products(own)),

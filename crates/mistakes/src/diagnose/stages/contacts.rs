@@ -95,7 +95,8 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
             ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !impulse_matches(one, other, &ROUND_OFF))
         });
         let Some(first) = first else { continue };
-        let has = |list: &[LoggedImpulse], one: &LoggedImpulse| list.iter().any(|other| other.pair() == one.pair());
+        let has =
+            |list: &[LoggedImpulse], impulse: &LoggedImpulse| list.iter().any(|other| other.pair() == impulse.pair());
         match (ours.get(first), theirs.get(first)) {
             (Some(one), Some(other)) if one.pair() == other.pair() => {
                 contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));

@@ -50,7 +50,8 @@ impl Responses {
                         changes.push((ChangedQuantity { kind: hit.pair.kind, body, quantity }, change));
                     }
                 }
-                let is_nothing = |one: &Change| !one.changes_across && one.ratio.is_none_or(|ratio| ratio == 0.0);
+                let is_nothing =
+                    |change: &Change| !change.changes_across && change.ratio.is_none_or(|ratio| ratio == 0.0);
                 if !facts.is_continuous() && changes.iter().all(|(_, change)| is_nothing(change)) {
                     all.unresolved += 1;
                     continue;

@@ -127,7 +127,9 @@ fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     for facts in ends {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
-        if !(0..count).all(|one| are_near(vector_at(&expected.positions, one), vector_at(&actual.positions, one))) {
+        if !(0..count)
+            .all(|particle| are_near(vector_at(&expected.positions, particle), vector_at(&actual.positions, particle)))
+        {
             return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
         }
         let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
@@ -231,7 +233,7 @@ impl ZoneMotions {
         let (mut what, details) = self.measured.describe();
         if self.bent_single_zones + self.bent_large_zones > 0 {
             what.insert(
-                what.iter().position(|one| *one != WrongMotion::Center).unwrap_or(what.len()),
+                what.iter().position(|motion| *motion != WrongMotion::Center).unwrap_or(what.len()),
                 WrongMotion::Distances,
             );
         }

@@ -155,8 +155,9 @@ impl SecondPass {
         let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
         for pair in &first {
             let own = pair_particles(scene, *pair);
-            let touches =
-                |other: &Pair| other != pair && pair_particles(scene, *other).iter().any(|one| own.contains(one));
+            let touches = |other: &Pair| {
+                other != pair && pair_particles(scene, *other).iter().any(|particle| own.contains(particle))
+            };
             let leads_to = |positions: &[f64]| facts.fits_motion(scene, 1, positions, |other| other == *pair);
             self.contacts += 1;
             if leads_to(&second.end_positions) {

@@ -80,7 +80,7 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
         () => ChangedParticles::Any,
     };
     let ratios: Vec<f64> =
-        entries.iter().filter(|one| one.expected.abs() > 1e-9).map(|one| one.actual / one.expected).collect();
+        entries.iter().filter(|entry| entry.expected.abs() > 1e-9).map(|entry| entry.actual / entry.expected).collect();
     let (ratio, details) = match common_value(&ratios) {
         _ if ratios.len() < entries.len() => (ChangeRatio::Other, Vec::new()),
         Some(ratio) if ratio.abs() < super::RATIO_TOLERANCE => (ChangeRatio::Nothing, Vec::new()),

@@ -40,7 +40,7 @@ impl ParticleGroup {
 
     /// Returns whether the zone must end where it started: it contains a half-plane or a fixed particle.
     pub(super) fn must_stop(&self, scene: &Scene) -> bool {
-        self.has_half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
+        self.has_half_plane || self.particles.iter().any(|&particle| scene.particles[particle].fixed)
     }
 
     fn contains(&self, other: &Self) -> bool {
@@ -152,7 +152,7 @@ impl<'a> FirstRound<'a> {
     }
 
     fn are_at(&self, state: &State, particles: &[usize]) -> bool {
-        particles.iter().all(|&one| self.is_at(state, one))
+        particles.iter().all(|&particle| self.is_at(state, particle))
     }
 
     /// Returns the expected state of a zone.
@@ -204,18 +204,18 @@ impl<'a> FirstRound<'a> {
         // A part of the zone is tried, alone or with particles that are in no zone.
         let parts = (1..1_u32 << zone.particles.len()).map(|bits| {
             let is_in = |(bit, _): &(usize, &usize)| bits >> bit & 1 == 1;
-            zone.particles.iter().enumerate().filter(is_in).map(|(_, one)| *one).collect::<Vec<usize>>()
+            zone.particles.iter().enumerate().filter(is_in).map(|(_, particle)| *particle).collect::<Vec<usize>>()
         });
         for part in parts {
             let other_particles: Vec<usize> =
-                zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
+                zone.particles.iter().copied().filter(|particle| !part.contains(particle)).collect();
             let leads_there = |group: &ParticleGroup| {
                 let is_body = group.particles.len() > 1 || group.must_stop(self.scene);
                 let moved = self.moved_state(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &other_particles)
             };
             // A particle with the expected position was not omitted.
-            let is_left = || other_particles.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
+            let is_left = || other_particles.iter().any(|&particle| !self.is_at(&self.expected_state(zone), particle));
             if is_left()
                 && [false, zone.has_half_plane]
                     .iter()
@@ -239,7 +239,7 @@ impl<'a> FirstRound<'a> {
         if self.rounds > 1 {
             return Vec::new();
         }
-        let is_in_zone = |one: &usize| self.zones.iter().any(|zone| zone.particles.contains(one));
+        let is_in_zone = |particle: &usize| self.zones.iter().any(|zone| zone.particles.contains(particle));
         let all = 0..self.scene.particles.len();
         all.filter(|particle| !is_in_zone(particle) && !self.is_at(self.middle, *particle)).collect()
     }
@@ -275,8 +275,10 @@ impl<'a> FirstRound<'a> {
         if self.are_at(&free, &zone.particles) {
             return ZoneResult::Wrong(WrongZones::MoveOn);
         }
-        let is_back = |one: &usize| are_near(vector_at(&self.end.positions, *one), vector_at(&stopped.positions, *one));
-        let rests = |one: &usize| length(vector_at(&self.end.velocities, *one)) <= ROUND_OFF_LIMIT;
+        let is_back = |particle: &usize| {
+            are_near(vector_at(&self.end.positions, *particle), vector_at(&stopped.positions, *particle))
+        };
+        let rests = |particle: &usize| length(vector_at(&self.end.velocities, *particle)) <= ROUND_OFF_LIMIT;
         let all = || zone.particles.iter();
         if all().all(is_back) {
             ZoneResult::Wrong(WrongZones::KeepVelocities)
@@ -339,9 +341,10 @@ pub(super) fn rotation_angle(scene: &Scene, group: &ParticleGroup, start: &State
 
 /// Returns the center of mass of a group.
 pub(super) fn center_of_mass(scene: &Scene, group: &ParticleGroup, state: &State) -> Vec2 {
-    let mass = |one: usize| scene.particles[one].mass;
-    let sum = group.particles.iter().map(|&one| mass(one) * vector_at(&state.positions, one)).sum::<Vec2>();
-    divide(sum, group.particles.iter().map(|&one| mass(one)).sum())
+    let mass = |particle: usize| scene.particles[particle].mass;
+    let sum =
+        group.particles.iter().map(|&particle| mass(particle) * vector_at(&state.positions, particle)).sum::<Vec2>();
+    divide(sum, group.particles.iter().map(|&particle| mass(particle)).sum())
 }
 
 pub(super) fn are_near(one: Vec2, two: Vec2) -> bool {

@@ -75,7 +75,8 @@ impl<'e> SingleElements<'e> {
         let Some(written) = element.attribute("type") else {
             return reject("No integrator 'type' attribute specified. Exiting.");
         };
-        let Some(integrator) = Integrator::ALL.into_iter().find(|one| one.name().as_bytes() == written) else {
+        let Some(integrator) = Integrator::ALL.into_iter().find(|integrator| integrator.name().as_bytes() == written)
+        else {
             return reject("Invalid integrator 'type' attribute specified. Exiting.");
         };
         Ok((integrator, read_scalar(element, "integrator", "dt", "numeric")?))

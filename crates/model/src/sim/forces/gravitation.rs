@@ -1,6 +1,6 @@
 //! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
 use super::{add, subtract};
-use crate::sim::matrix::couple;
+use crate::sim::matrix::add_coupling;
 use fosssim_num::vector::{divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
@@ -31,7 +31,7 @@ pub(super) fn add_position_hessian(
         let identity = if row == column { 1.0 } else { 0.0 };
         (identity - (3.0 * n[row]) * n[column]) * s
     });
-    couple(matrix, [a, b], &block);
+    add_coupling(matrix, [a, b], &block);
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The damped spring on an edge (simulation.md 3, springforce).
 use super::{add, subtract};
-use crate::sim::matrix::{couple, decouple};
+use crate::sim::matrix::{add_coupling, subtract_coupling};
 use fosssim_num::vector::{Vec2, divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
@@ -49,7 +49,7 @@ pub(super) fn add_position_hessian(
         let identity = if r == c { 1.0 } else { 0.0 };
         (p[(r, c)] + (stretch * (identity - p[(r, c)])) * reciprocal) * stiffness
     });
-    couple(matrix, [a, b], &elastic);
+    add_coupling(matrix, [a, b], &elastic);
 
     let w = vector_at(v, b) - vector_at(v, a);
     let s = n.dot(&w);
@@ -57,7 +57,7 @@ pub(super) fn add_position_hessian(
     let scale = (-damping) / l;
     let damped =
         Matrix2::from_fn(|r, c| (cross[(r, c)] - (cross[(r, 0)] * p[(0, c)] + cross[(r, 1)] * p[(1, c)])) * scale);
-    decouple(matrix, [a, b], &damped);
+    subtract_coupling(matrix, [a, b], &damped);
 }
 
 /// Adds the velocity Hessian `b n nT` of the damping.
@@ -65,7 +65,7 @@ pub(super) fn add_velocity_hessian([a, b]: [usize; 2], damping: f64, x: &[f64], 
     let (_, n) = direction([a, b], x);
     let scaled = damping * n;
     let block = Matrix2::new(scaled.x * n.x, scaled.x * n.y, scaled.y * n.x, scaled.y * n.y);
-    couple(matrix, [a, b], &block);
+    add_coupling(matrix, [a, b], &block);
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ pub(super) struct Stepper {
 /// [`SearchCounts::work`](super::search::SearchCounts::work). Methods whose work per step is constant are not counted.
 #[derive(Debug, Clone, Copy)]
 struct NewtonWork {
-    performed: u64,
+    performed_work: u64,
     limit: u64,
     per_iteration: u64,
 }
@@ -39,8 +39,8 @@ struct NewtonWork {
 impl NewtonWork {
     /// Counts an iteration. Returns whether more are allowed.
     fn iterate(&mut self) -> bool {
-        self.performed += self.per_iteration;
-        self.performed <= self.limit
+        self.performed_work += self.per_iteration;
+        self.performed_work <= self.limit
     }
 }
 
@@ -85,13 +85,13 @@ impl Stepper {
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
-            newton_work: NewtonWork { performed: 0, limit: u64::MAX, per_iteration: min_work(scene) },
+            newton_work: NewtonWork { performed_work: 0, limit: u64::MAX, per_iteration: min_work(scene) },
         }
     }
 
     /// Returns the work of all steps so far.
     pub fn work(&self) -> u64 {
-        self.newton_work.performed
+        self.newton_work.performed_work
     }
 
     /// Sets the maximum work over all steps.

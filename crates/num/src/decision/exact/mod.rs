@@ -54,8 +54,9 @@ pub fn find_exact_first_time(polynomials: &[&[f64]]) -> ExactAnswer {
     // A polynomial that is positive on the whole interval (0, infinity) does not matter.
     let polynomials: Vec<IntegerPolynomial> =
         polynomials.into_iter().filter(|polynomial| !polynomial.is_always_positive_after_zero()).collect();
-    let zeros =
-        polynomials.iter().fold(IntegerPolynomial::one(), |product, one| product.unite(&one.square_free_part()));
+    let zeros = polynomials
+        .iter()
+        .fold(IntegerPolynomial::one(), |product, polynomial| product.unite(&polynomial.square_free_part()));
     let mut roots = roots_within_step(&zeros);
     if zeros.sign_at(&DyadicNumber::one()) == 0 {
         roots.push(Root::from_point(DyadicNumber::one()));

@@ -5,7 +5,7 @@ use crate::untrusted_text::{strip_control_characters, to_one_line};
 use crate::{
     grade::{
         change_lines, count_wrong, describe_likely, describe_speed, describe_worth, detail_likely,
-        find_likely_mistakes, format_optional_points, format_points, group_by_cause, head_likely,
+        find_likely_mistakes, format_optional_points, format_points, group_by_cause, likely_heading,
     },
     number::format_count,
     style::TextStyle,
@@ -42,7 +42,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
-            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, head_likely(&mistakes)));
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, likely_heading(&mistakes)));
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = strip_control_characters(&describe_likely(grade, mistake));

@@ -32,7 +32,8 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let right = since("right", &|changes| format!("+{}", changes.newly_right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.newly_wrong.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
-    let names: Vec<&str> = grades.first().iter().flat_map(|grade| &grade.groups).map(|one| one.name.as_str()).collect();
+    let names: Vec<&str> =
+        grades.first().iter().flat_map(|grade| &grade.groups).map(|group| group.name.as_str()).collect();
     let is_tests = names.iter().all(|name| name.len() > GROUP_SUFFIX.len() && name.ends_with(GROUP_SUFFIX));
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {

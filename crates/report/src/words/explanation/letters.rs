@@ -7,7 +7,7 @@ use fosssim_model::sim::PairKind;
 /// are known.
 pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| find_difference(line, |_| true));
-    let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
+    let all = |kind| !kinds.is_empty() && kinds.iter().all(|member| *member == kind);
     let is_edge = all(PairKind::ParticleEdge)
         || lines.iter().any(|line| find_difference(line, |number| number == '3').is_some() || line.contains("re^2"));
     let has_turn = lines.iter().any(|line| line.contains("x_cm"));

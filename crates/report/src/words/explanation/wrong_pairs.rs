@@ -21,7 +21,8 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
             continue;
         }
         let traits = pair_traits(pairs, times);
-        let words = |traits: &[PairTrait]| traits.iter().map(|one| one.description.clone()).collect::<Vec<_>>();
+        let words =
+            |traits: &[PairTrait]| traits.iter().map(|pair_trait| pair_trait.description.clone()).collect::<Vec<_>>();
         let share = describe_share(pairs, times);
         let is_same = |other: &&mut PairFault<'_>| {
             other.times == times && other.share == share && words(&other.traits) == words(&traits)
@@ -69,9 +70,9 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
             count(wrong),
             count(right)
         );
-        let traits = fault.traits.iter().map(|one| {
+        let traits = fault.traits.iter().map(|pair_trait| {
             let others = format_count(right, "other");
-            format!("{}: also in {} of {others}.", one.exact_condition, count(one.right_pairs))
+            format!("{}: also in {} of {others}.", pair_trait.exact_condition, count(pair_trait.right_pairs))
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
     };

@@ -149,7 +149,7 @@ named_edits! {
     RADIUS_UNSCALED "radius-unscaled" [PE] 2.5: Formula(Subject::EdgeOverlap, unscaled_radius)
         => "The radii are not multiplied by the edge's squared length when the denominator is cleared"
         => "R^2 is used instead of R^2 (x32 + t d32).(x32 + t d32)";
-    ONE_UNSCALED "one-unscaled" [PE] 2.5: Formula(Subject::AlphaHigh, unscaled_one)
+    ONE_UNSCALED "one-unscaled" [PE] 2.5: Formula(Subject::AlphaHigh, unscaled_alpha_below_one)
         => "The constant in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared"
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)

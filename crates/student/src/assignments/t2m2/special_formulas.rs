@@ -31,7 +31,7 @@ pub(super) fn unscaled_radius(inputs: &Inputs) -> Vec<BoundedValue> {
 }
 
 /// Returns the polynomial alpha < 1 without the edge's squared length as a factor.
-pub(super) fn unscaled_one(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn unscaled_alpha_below_one(inputs: &Inputs) -> Vec<BoundedValue> {
     let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
     vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::from_exact(1.0) - w0.dot(e0)]
 }

@@ -35,7 +35,7 @@ pub(super) struct Sweep {
     /// The memory for sorting boxes.
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
     /// For each edge, the largest upper end on x of this edge and the edges before it.
-    furthest: Vec<f64>,
+    max_upper_ends: Vec<f64>,
 }
 
 impl Sweep {
@@ -51,7 +51,7 @@ impl Sweep {
             rows: Rows::default(),
             has_rows: false,
             sort_buffers: Default::default(),
-            furthest: Vec::with_capacity(edges),
+            max_upper_ends: Vec::with_capacity(edges),
         }
     }
 
@@ -73,7 +73,7 @@ impl Sweep {
 
     /// Sorts the bodies for positions `x` (2N).
     pub fn update(&mut self, x: &[f64]) {
-        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, sort_buffers, furthest, .. } = self;
+        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, sort_buffers, max_upper_ends, .. } = self;
         let particle = |body: u32| {
             let place = vector_at(x, body as usize);
             BodyExtent::from_points(body, [place; 2], radii[body as usize], *has_four_axes)
@@ -88,10 +88,10 @@ impl Sweep {
         if self.has_rows {
             self.rows.assign(particle_boxes);
         }
-        furthest.clear();
-        furthest.extend(edge_boxes.iter().scan(f64::NEG_INFINITY, |furthest, one| {
-            *furthest = furthest.max(one.high[0]);
-            Some(*furthest)
+        max_upper_ends.clear();
+        max_upper_ends.extend(edge_boxes.iter().scan(f64::NEG_INFINITY, |max_end, extent| {
+            *max_end = max_end.max(extent.high[0]);
+            Some(*max_end)
         }));
     }
 
@@ -114,7 +114,7 @@ impl Sweep {
     /// Calls `visit` for all particles with their near edges, except edges that end in them.
     pub fn visit_edges(&self, mut visit: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
-            let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
+            let first = self.max_upper_ends.partition_point(|end| *end < one.low[0]);
             for other in self.edge_boxes[first..].iter().take_while(|other| !other.begins_behind(one)) {
                 let (particle, edge) = (one.body as usize, other.body as usize);
                 if one.overlaps(other) && !self.edges[edge].0.contains(&particle) {
@@ -142,7 +142,9 @@ fn sort(
     // Keys are integers in the order of the position on x, then of the previous search, so that each body is moved only
     // once.
     keys.clear();
-    keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(sort_key(one.low[0])) << 32 | u128::from(rank)));
+    keys.extend(
+        boxes.iter().zip(0_u32..).map(|(extent, rank)| u128::from(sort_key(extent.low[0])) << 32 | u128::from(rank)),
+    );
     for part in keys.split_mut(|key| boxes[*key as u32 as usize].low[0].is_nan()) {
         sort_nearly_sorted(part, u128::cmp);
     }
