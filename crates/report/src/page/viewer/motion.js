@@ -145,7 +145,7 @@ class Motion {
     const { n, per, first, last, radii } = this.data;
     const stride = Math.max(1, Math.floor((last - first) / 400));
     for (const track of ["reference", "submission"]) {
-      for (let step = first; step <= last; step += every) {
+      for (let step = first; step <= last; step += stride) {
         const state = this.state(track, step);
         if (!state) break;
         if (
