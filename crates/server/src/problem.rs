@@ -119,7 +119,7 @@ problems! {
         "send less in one request";
     /// The URL does not support the method.
     wrong_method(method: &str): 405, "wrong-method", "Not supported here",
-        format!("this address does not accept {method}"),
+        format!("this URL does not accept {method}"),
         "go back, and use the button on the page; programs find the methods in /api/openapi.json";
     /// The disk is nearly full.
     no_room(): 507, "no-room", "Not enough space",

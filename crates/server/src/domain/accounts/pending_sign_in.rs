@@ -55,7 +55,7 @@ impl App {
     ) -> Result<StartedSignIn, Problem> {
         ensure(
             self.0.throttle.try_acquire(throttle::bucket_id(secrets.address, service), MAX_LOGINS, Instant::now()),
-            Problem::too_many("too many people are signing in from your address"),
+            Problem::too_many("too many people are signing in from your IP address"),
         )?;
         // All windows of a browser share one secret.
         let is_secret = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());

@@ -36,7 +36,7 @@ impl Visitor {
     fn count_sign_in(&self) -> Result<(), Problem> {
         let bucket = throttle::bucket_id(self.secrets.address, "sign-in");
         let passes = self.app.0.throttle.try_acquire(bucket, MAX_SIGN_INS, Instant::now());
-        ensure(passes, Problem::too_many("too many people are signing in from your address"))
+        ensure(passes, Problem::too_many("too many people are signing in from your IP address"))
     }
 
     /// Signs in with a link, which cannot be used again.
