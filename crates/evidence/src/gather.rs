@@ -164,9 +164,11 @@ fn find_wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
 /// Collects the evidence, with the reference's own run and its steps from the trace's states.
 struct EvidenceBuilder<'a> {
     scene: &'a Scene,
+    /// The reference's own run.
     free_run: Simulation,
-    is_free_run_going: bool,
-    own: Simulation,
+    continues_free_run: bool,
+    /// The simulation of single steps from the trace's own states.
+    step_run: Simulation,
     work: Budget<'a>,
     evidence: Evidence,
 }
@@ -183,30 +185,30 @@ impl<'a> EvidenceBuilder<'a> {
             inspected: Vec::new(),
         };
         let work = Budget::new(scene, false);
-        Self { scene, free_run: simulation(), is_free_run_going: true, own: simulation(), work, evidence }
+        Self { scene, free_run: simulation(), continues_free_run: true, step_run: simulation(), work, evidence }
     }
 
     fn begin(&mut self, first: &State) {
-        if self.evidence.window.holds(0, false) {
+        if self.evidence.window.contains(0, false) {
             self.evidence.reference.push(self.free_run.state());
             self.evidence.submission.push(first);
         }
     }
 
     /// Returns whether a record of the step is kept.
-    fn holds(&self, step: u32, is_mid: bool) -> bool {
-        (self.evidence.layout.has_polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
+    fn keeps_record(&self, step: u32, is_mid: bool) -> bool {
+        (self.evidence.layout.has_polynomials || !is_mid) && self.evidence.window.contains(step, is_mid)
     }
 
     /// Advances the reference's own run by one step.
     fn run_freely(&mut self, step: u32) {
         let mut midway = MidState::default();
-        self.is_free_run_going = self.is_free_run_going && self.free_run.step(&mut midway).is_ok();
-        if self.is_free_run_going {
-            if let (Some(state), true) = (&midway.state, self.holds(step, true)) {
+        self.continues_free_run = self.continues_free_run && self.free_run.step(&mut midway).is_ok();
+        if self.continues_free_run {
+            if let (Some(state), true) = (&midway.state, self.keeps_record(step, true)) {
                 self.evidence.reference.push(state);
             }
-            if self.holds(step, false) {
+            if self.keeps_record(step, false) {
                 self.evidence.reference.push(self.free_run.state());
             }
         }
@@ -214,7 +216,7 @@ impl<'a> EvidenceBuilder<'a> {
 
     fn keep_states(&mut self, step: u32, mid: &LenientFrame, end: &LenientFrame) {
         for (frame, is_mid) in [(mid, true), (end, false)] {
-            if self.holds(step, is_mid) {
+            if self.keeps_record(step, is_mid) {
                 self.evidence.submission.push(&frame.state);
             }
         }
@@ -229,18 +231,18 @@ impl<'a> EvidenceBuilder<'a> {
         (mid, end): (&'f LenientFrame, &'f LenientFrame),
         wanted: Option<&[(WantedCalls, Pair)]>,
     ) -> Option<PassCount<'f>> {
-        self.own.state_mut().clone_from(before);
-        self.own.set_steps_done(step - 1);
+        self.step_run.state_mut().clone_from(before);
+        self.step_run.set_steps_done(step - 1);
         // The mid record of `continuous-time` equals the end record, so it is compared with the expected end of the
         // step.
         let mid_state = matches!(self.scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
         let mut count = PassCount { mid: mid_state, ..PassCount::default() };
         let Some(wanted) = wanted else {
-            return self.work.step(&mut self.own, &mut count).is_ok().then_some(count);
+            return self.work.step(&mut self.step_run, &mut count).is_ok().then_some(count);
         };
         let mut inspector =
             Inspector::new(self.scene, step, mid_state, (&end.polynomials, end.logged_polynomials), wanted);
-        let done = self.work.step(&mut self.own, &mut (&mut inspector, &mut count)).is_ok();
+        let done = self.work.step(&mut self.step_run, &mut (&mut inspector, &mut count)).is_ok();
         let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
         inspector.step.actual_contacts.clone_from(impulses);
         // The inspector must observe first: it keeps the expected mid record, and then makes the step continue with the
@@ -254,11 +256,11 @@ impl<'a> EvidenceBuilder<'a> {
 
     /// Returns whether the state of the reference's own run differs from `end`.
     fn differs_from_free_run(&self, end: &State) -> bool {
-        self.is_free_run_going && max_distance(&self.free_run.state().positions, &end.positions) > MOTION_TOLERANCE
+        self.continues_free_run && max_distance(&self.free_run.state().positions, &end.positions) > MOTION_TOLERANCE
     }
 
     fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
-        let [position, velocity] = distances(self.own.state(), &end.state);
+        let [position, velocity] = distances(self.step_run.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
             position: max_with_nan(count.deviations[0], position),

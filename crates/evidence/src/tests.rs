@@ -83,10 +83,12 @@ fn a_finding_about_a_polynomial_has_its_call() {
 fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
     let layout = Layout { particles: 10, has_impulses: true, has_polynomials: true, steps: 1000 };
     let whole = Window::for_focus(500, layout, 80 * 1001);
-    assert!(whole.is_whole(1000) && whole.holds(0, false) && !whole.holds(0, true));
+    assert!(whole.is_whole(1000) && whole.contains(0, false) && !whole.contains(0, true));
     let part = Window::for_focus(500, layout, 80 * 90);
     assert_eq!(part, Window { first: 470, last: 560 });
-    assert!(part.holds(470, false) && !part.holds(470, true) && part.holds(560, true) && !part.holds(561, true));
+    assert!(
+        part.contains(470, false) && !part.contains(470, true) && part.contains(560, true) && !part.contains(561, true)
+    );
     assert_eq!(Window::for_focus(3, layout, 80 * 90), Window { first: 0, last: 90 });
     assert_eq!(Window::for_focus(999, layout, 80 * 90), Window { first: 910, last: 1000 });
     assert_eq!(Window::for_focus(7, layout, 1).last - Window::for_focus(7, layout, 1).first, 1);

@@ -38,7 +38,7 @@ impl Window {
     }
 
     /// Returns whether a record of a step is kept.
-    pub const fn holds(&self, step: u32, is_mid: bool) -> bool {
+    pub const fn contains(&self, step: u32, is_mid: bool) -> bool {
         (self.first < step || self.first == step && !is_mid) && step <= self.last
     }
 }
@@ -61,7 +61,7 @@ impl Track {
             if layout.step_of_record(record) > window.last || reader.next(&mut frame).is_err() {
                 break;
             }
-            if window.holds(layout.step_of_record(record), layout.is_mid_record(record)) {
+            if window.contains(layout.step_of_record(record), layout.is_mid_record(record)) {
                 track.push(&frame.state);
             }
         }

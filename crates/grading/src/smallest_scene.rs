@@ -141,18 +141,18 @@ impl Shrinker<'_> {
             };
             let steps = self.limits.step.map_or_else(|| list_wrong_steps(&task.scene, &observed), |step| vec![step]);
             let (mut runs, mut fault, mut held) = (0, Ok(()), None);
-            let mut holds = |scene: &Scene, is_alone: bool| {
+            let mut is_reproduced = |scene: &Scene, is_only_reason: bool| {
                 if runs == self.limits.runs || is_over(spent) {
                     return None;
                 }
                 runs += 1;
                 let observed = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
                 let observed = observed.filter(|_| !self.runner.cancellation.is_cancelled())?;
-                let holds = reason.is_reproduced(scene, &observed, is_alone);
-                held = if holds { Some(observed) } else { held.take() };
-                Some(holds)
+                let is_reproduced = reason.is_reproduced(scene, &observed, is_only_reason);
+                held = if is_reproduced { Some(observed) } else { held.take() };
+                Some(is_reproduced)
             };
-            let small = reduce(&step_starts(&task.scene, &observed.trace, &steps), self.assignment, &mut holds);
+            let small = reduce(&step_starts(&task.scene, &observed.trace, &steps), self.assignment, &mut is_reproduced);
             fault?;
             if let Some((small, observed)) = small.zip(held) {
                 return Ok(Some(ShrunkScene {

@@ -67,8 +67,9 @@ struct StepSlot {
     is_judged: bool,
     /// The work of judging the step by the original's rules, in detection calls.
     work: u64,
-    /// Whether the fair rules have judged the step completely, and their work.
+    /// Whether the fair rules have judged the step completely.
     is_fairly_judged: bool,
+    /// The work of judging the step by the fair rules.
     fair_work: u64,
     /// The number of bytes read for the step.
     bytes: usize,

@@ -28,8 +28,8 @@
 //!
 //! let reason = WrongReason::first_reason(&scene, &run(&scene)).expect("it is wrong");
 //! let begin = step_starts(&scene, &run(&scene).trace, &[1]);
-//! let mut holds = |scene: &_, is_alone| Some(reason.is_reproduced(scene, &run(scene), is_alone));
-//! let found = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
+//! let mut is_reproduced = |scene: &_, is_only_reason| Some(reason.is_reproduced(scene, &run(scene), is_only_reason));
+//! let found = reduce(&begin, Assignment::T1M1, &mut is_reproduced).expect("a scene");
 //! assert_eq!((found.scene.step_count(), found.scene.particles.len()), (1, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -57,30 +57,30 @@ impl WrongReason {
     }
 
     /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
-    /// is the named mistake, and not by a decision that round-off may change. With `is_alone`, the reason must be the
+    /// is the named mistake, and not by a decision that round-off may change. With `is_only_reason`, the reason must be the
     /// first one that the scene shows, without other mistakes that have the same effect.
-    pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
+    pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_only_reason: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, seen) else { return false };
         match (self, detail) {
             (Self::Mistake(mistake), Some(FindingDetail::BeyondReach { .. })) if !mistake.is_not_finite() => false,
-            (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, seen, is_alone),
+            (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, seen, is_only_reason),
             (_, detail) => fault == *self && detail.is_none_or(is_clear_finding),
         }
     }
 }
 
 /// Returns whether the explanations of a wrong trace name a mistake, as the first one if that is requested.
-fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
+fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_only_reason: bool) -> bool {
     // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage without code.
     let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
     let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
     let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
     // Most attempts end here, long before every mistake of the catalogue has been tried.
-    if is_alone && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
+    if is_only_reason && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
         return false;
     }
     let explanations = diagnose::explain(scene, &seen.trace);
-    if is_alone {
+    if is_only_reason {
         explanations.first().is_some_and(|first| first.statement() == mistake.statement())
     } else {
         is_named_in(mistake, &explanations)

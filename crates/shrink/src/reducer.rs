@@ -26,13 +26,18 @@ pub type RunProgram<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
 /// Begins with the first of these steps' scenes on which the program is wrong for the reason alone, or else for the
 /// reason together with others, and makes it smaller, or returns `None` if there is no such scene.
-pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut RunProgram<'_>) -> Option<SmallScene> {
-    for is_alone in [true, false] {
+pub fn reduce(
+    beginnings: &[(u32, Scene)],
+    assignment: Assignment,
+    is_reproduced: &mut RunProgram<'_>,
+) -> Option<SmallScene> {
+    for is_only_reason in [true, false] {
         for (step, scene) in beginnings {
-            if holds(scene, is_alone)? {
+            if is_reproduced(scene, is_only_reason)? {
                 let size = measure_size(scene, assignment);
                 let refuted = BTreeSet::new();
-                let mut search = Search { assignment, is_alone, holds, scene: scene.clone(), size, refuted };
+                let mut search =
+                    Search { assignment, is_only_reason, is_reproduced, scene: scene.clone(), size, refuted };
                 let is_minimal = search.run().is_some();
                 return Some(SmallScene { scene: search.scene, step: *step, is_minimal });
             }
@@ -44,8 +49,9 @@ pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut R
 /// A running search, with the best scene so far.
 struct Search<'a, 'b> {
     assignment: Assignment,
-    is_alone: bool,
-    holds: &'a mut RunProgram<'b>,
+    /// Whether the program may be wrong for no other reason.
+    is_only_reason: bool,
+    is_reproduced: &'a mut RunProgram<'b>,
     scene: Scene,
     size: Size,
     /// The scenes on which the program is not wrong for the reason, as XML.
@@ -79,7 +85,7 @@ impl Search<'_, '_> {
             if size >= self.size || self.refuted.contains(&xml) {
                 continue;
             }
-            if (self.holds)(&scene, self.is_alone)? {
+            if (self.is_reproduced)(&scene, self.is_only_reason)? {
                 (self.size, self.scene) = (size, scene);
                 return Some(true);
             }

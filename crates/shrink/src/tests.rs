@@ -33,8 +33,9 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
         let seen = run(&scene, student);
         let Some(reason) = WrongReason::first_reason(&scene, &seen) else { continue };
         let steps: Vec<u32> = (1..=scene.step_count()).collect();
-        let mut holds = |scene: &Scene, is_alone| Some(reason.is_reproduced(scene, &run(scene, student), is_alone));
-        let found = reduce(&step_starts(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
+        let mut is_reproduced =
+            |scene: &Scene, is_only_reason| Some(reason.is_reproduced(scene, &run(scene, student), is_only_reason));
+        let found = reduce(&step_starts(&scene, &seen.trace, &steps), assignment, &mut is_reproduced).expect("a scene");
         return (reason, found);
     }
     panic!("{mistake} shows on no probe scene");
@@ -75,11 +76,12 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let student = Student::new(Some(find("gravity-doubled").expect("a row").mistake));
     let reason = WrongReason::first_reason(scene, &run(scene, student)).expect("wrong");
-    let mut holds = |scene: &Scene, is_alone| Some(reason.is_reproduced(scene, &run(scene, student), is_alone));
+    let mut is_reproduced =
+        |scene: &Scene, is_only_reason| Some(reason.is_reproduced(scene, &run(scene, student), is_only_reason));
     let begin = step_starts(scene, &run(scene, student).trace, &[1]);
-    let all = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
+    let all = reduce(&begin, Assignment::T1M1, &mut is_reproduced).expect("a scene");
     let mut runs = 0..2;
-    let mut few = |scene: &Scene, is_alone| runs.next().and_then(|_| holds(scene, is_alone));
+    let mut few = |scene: &Scene, is_only_reason| runs.next().and_then(|_| is_reproduced(scene, is_only_reason));
     let some = reduce(&begin, Assignment::T1M1, &mut few).expect("one");
     assert!(all.is_minimal && !some.is_minimal);
     let [all, some_size] = [&all, &some].map(|small| size::measure_size(&small.scene, Assignment::T1M1));
@@ -92,8 +94,8 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
 fn one_body_is_tried_first() {
     let scene = &probe_scenes(Assignment::T2M2)[0].1;
     let mut runs = 0..2;
-    let mut holds = |_: &Scene, _| runs.next().map(|_| true);
-    let small = reduce(&step_starts(scene, &[], &[1]), Assignment::T2M2, &mut holds).expect("a scene");
+    let mut is_reproduced = |_: &Scene, _| runs.next().map(|_| true);
+    let small = reduce(&step_starts(scene, &[], &[1]), Assignment::T2M2, &mut is_reproduced).expect("a scene");
     assert!(scene.particles.len() > 1 && small.scene.particles.len() == 1);
 }
 

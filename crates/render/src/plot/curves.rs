@@ -108,7 +108,7 @@ fn x(time: f64) -> f64 {
     LEFT + time * (RIGHT - LEFT)
 }
 
-/// Draws a curve on `[0, 1]`, scaled to its largest absolute value. A positive factor moves no zero.
+/// Draws a curve on `[0, 1]`, scaled to its largest absolute value. Scaling does not move the zeros.
 fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();

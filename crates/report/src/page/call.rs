@@ -177,7 +177,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
-    // The names have to fit left of their bars; the title has the role.
+    // The names must be short, because they are left of the bars. The title says which polynomial it is.
     let curves =
         [plot_polynomial("expected".to_owned(), expected, set), plot_polynomial("yours".to_owned(), logged, &own)];
     let title = format!("Step {step}: {role}, expected and yours");

@@ -90,7 +90,7 @@ impl PromiseTable {
     }
 }
 
-/// Builds every attack with the C compiler `cc` and runs it with `backend`. Several attacks run at the same time.
+/// Builds every attack with the C compiler `compiler` and runs it with `backend`. Several attacks run at the same time.
 /// `report` is called after each attack. All files are written below `folder`, which must exist. The built programs are
 /// kept there for the next self-test.
 ///
@@ -100,11 +100,11 @@ impl PromiseTable {
 /// run without layers. Also fails if `folder` cannot be used. A broken promise is not an error.
 pub fn run(
     backend: &Backend,
-    cc: &Path,
+    compiler: &Path,
     folder: &Path,
     report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
-    run_selected(backend, cc, folder, |_| true, report)
+    run_selected(backend, compiler, folder, |_| true, report)
 }
 
 /// Runs the self-test like [`run`], but only for the attacks that `chosen` names.
@@ -114,7 +114,7 @@ pub fn run(
 /// Fails like [`run`].
 pub fn run_selected(
     backend: &Backend,
-    cc: &Path,
+    compiler: &Path,
     folder: &Path,
     chosen: impl Fn(&str) -> bool,
     mut report: impl FnMut(&Promise) + Send,
@@ -141,7 +141,8 @@ pub fn run_selected(
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(attack) = attacks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let place = TestSetup { backend, cc, sources: &sources, programs: &programs, folder: &folder };
+                    let place =
+                        TestSetup { backend, compiler, sources: &sources, programs: &programs, folder: &folder };
                     let state = place.try_attack(attack).unwrap_or_else(|why| why);
                     let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), state };
                     let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -170,7 +171,7 @@ fn attacks() -> Vec<Attack> {
 /// The folders and the tools that a self-test uses.
 struct TestSetup<'a> {
     backend: &'a Backend,
-    cc: &'a Path,
+    compiler: &'a Path,
     sources: &'a Path,
     programs: &'a Path,
     folder: &'a Path,
@@ -244,20 +245,24 @@ impl TestSetup<'_> {
         digest
             .update(source.contents())
             .update(header.contents())
-            .update(self.cc.as_os_str().as_encoded_bytes())
+            .update(self.compiler.as_os_str().as_encoded_bytes())
             .update(COMPILER_FLAGS.join(" ").as_bytes());
         let digest = digest.finalize().to_hex();
         let program = self.programs.join(format!("{}-{}", attack.name, &digest[..16]));
         if program.is_file() {
             return Ok(program);
         }
-        let describe = |error: std::io::Error| format!("{}: {error}", self.cc.display());
+        let describe = |error: std::io::Error| format!("{}: {error}", self.compiler.display());
         let path = self.sources.join(format!("{}.c", attack.name));
         write_file(&path, source.contents()).map_err(describe)?;
         // The program gets its name after it is complete, so that an incomplete one is never used.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique_name()));
-        let output =
-            Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(describe)?;
+        let output = Command::new(self.compiler)
+            .args(COMPILER_FLAGS)
+            .arg("-o")
+            .args([&fresh, &path])
+            .output()
+            .map_err(describe)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
             let lines = text.lines().take(3).collect::<Vec<_>>();

@@ -31,9 +31,11 @@ pub(super) struct SharedWaits(Vec<SharedWait>);
 struct SharedWait {
     id: u64,
     memory: File,
+    /// The address of the futex word.
     word: u64,
     /// The value that the word has as long as the thread must wait.
     value: u32,
+    /// The time at which the thread stops waiting, if there is one.
     limit: Option<Instant>,
     pause: Duration,
     /// The time at which the word is checked next.

@@ -48,7 +48,7 @@ pub enum ServiceFault {
         /// The platform's message, or a description of the error.
         reason: String,
         /// The pause that the platform requests; `None` if it requests no particular pause.
-        after: Option<Duration>,
+        retry_after: Option<Duration>,
     },
     /// The platform rejects the request, for the given reason.
     #[error("the platform rejects the request: {0}")]
@@ -56,8 +56,8 @@ pub enum ServiceFault {
 }
 
 impl ServiceFault {
-    fn from_outage(reason: impl fmt::Display) -> Self {
-        Self::Unavailable { reason: reason.to_string(), after: None }
+    pub(super) fn from_outage(reason: impl fmt::Display) -> Self {
+        Self::Unavailable { reason: reason.to_string(), retry_after: None }
     }
 }
 
@@ -77,7 +77,7 @@ pub(super) struct ServiceAnswer {
     body: Vec<u8>,
     /// The value of the header `Link`, which leads to further pages.
     pub(super) link: Option<String>,
-    after: Option<Duration>,
+    retry_after: Option<Duration>,
 }
 
 impl ServiceAnswer {
@@ -97,7 +97,7 @@ impl ServiceAnswer {
             200..=299 => Ok(self),
             // Redirections are not followed: only the URL that an administrator registered is called.
             300..=399 => Err(ServiceFault::Rejected(format!("{} redirects elsewhere", self.status))),
-            408 | 425 | 429 | 500.. => Err(ServiceFault::Unavailable { reason: text, after: self.after }),
+            408 | 425 | 429 | 500.. => Err(ServiceFault::Unavailable { reason: text, retry_after: self.retry_after }),
             _ => Err(ServiceFault::Rejected(text)),
         }
     }
@@ -248,9 +248,9 @@ fn send_blocking(
     let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
     let link = header("link");
     // Only a value in seconds is used. If the header contains a date, the queue's own delay applies.
-    let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
+    let retry_after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body =
         answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(ServiceFault::from_outage)?;
-    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(MAX_WAIT)) })
+    Ok(ServiceAnswer { status, body, link, retry_after: retry_after.map(|wait| wait.min(MAX_WAIT)) })
 }

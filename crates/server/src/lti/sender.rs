@@ -64,7 +64,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
                 Ok(Some((claim, place))) => {
                     let (database, lti) = (database.clone(), lti.clone());
                     tokio::spawn(async move {
-                        if let Err(error) = work(&database, &policy, &lti, &claim).await {
+                        if let Err(error) = send_claimed(&database, &policy, &lti, &claim).await {
                             tracing::warn!(%error, "the state of a score can't be stored yet");
                         }
                         drop(place);
@@ -101,7 +101,7 @@ async fn take_job<F: Future<Output = Result<(), DbError>>>(
     Ok(claim.map(|claim| (claim, permit)))
 }
 
-async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
+async fn send_claimed(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Claim) -> Result<(), DbError> {
     let sending = send(database, lti, claim);
     tokio::pin!(sending);
     let result = loop {
@@ -128,7 +128,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             let text = fault.to_string();
             tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
             let (tries, least) = match &fault {
-                ServiceFault::Unavailable { after, .. } => (MAX_OUTAGE_TRIES, after.unwrap_or_default()),
+                ServiceFault::Unavailable { retry_after, .. } => (MAX_OUTAGE_TRIES, retry_after.unwrap_or_default()),
                 ServiceFault::Rejected(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
             };
             let patient_policy = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
@@ -211,7 +211,7 @@ async fn line_item(database: &Database, lti: &Lti, score: &ReadyScore) -> Result
             }
         }
     }
-    Err(ServiceFault::Unavailable { reason: "the grade book's column is still being created".to_owned(), after: None })
+    Err(ServiceFault::from_outage("the column in the grade book is not created yet"))
 }
 
 /// Finds the column of a link on a platform, or creates it (AGS 3.2).

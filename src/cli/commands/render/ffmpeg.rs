@@ -51,7 +51,7 @@ pub(super) struct Ffmpeg {
 #[derive(Default)]
 struct EncoderWatch {
     pictures: AtomicU64,
-    is_over: AtomicBool,
+    is_finished: AtomicBool,
     is_given_up: AtomicBool,
 }
 
@@ -153,7 +153,7 @@ impl Ffmpeg {
                 None => thread::sleep(Duration::from_millis(10)),
             }
         };
-        self.encoder_watch.is_over.store(true, Ordering::Relaxed);
+        self.encoder_watch.is_finished.store(true, Ordering::Relaxed);
         let words = self.messages.take().and_then(|words| words.join().ok()).unwrap_or_default();
         if self.encoder_watch.is_given_up.load(Ordering::Relaxed) {
             bail!("ffmpeg read no frame for {} seconds and was killed", STUCK_TIME.as_secs());
@@ -168,7 +168,7 @@ impl Ffmpeg {
 
 impl Drop for Ffmpeg {
     fn drop(&mut self) {
-        self.encoder_watch.is_over.store(true, Ordering::Relaxed);
+        self.encoder_watch.is_finished.store(true, Ordering::Relaxed);
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
         if let Ok(None) = child.try_wait() {
             let _ = child.kill();
@@ -182,12 +182,12 @@ fn kill_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {
         let (mut seen, mut since) = (0, Instant::now());
-        while !watch.is_over.load(Ordering::Relaxed) {
+        while !watch.is_finished.load(Ordering::Relaxed) {
             thread::sleep(Duration::from_millis(200));
             let pictures = watch.pictures.load(Ordering::Relaxed);
             if pictures != seen {
                 (seen, since) = (pictures, Instant::now());
-            } else if since.elapsed() > STUCK_TIME && !watch.is_over.load(Ordering::Relaxed) {
+            } else if since.elapsed() > STUCK_TIME && !watch.is_finished.load(Ordering::Relaxed) {
                 watch.is_given_up.store(true, Ordering::Relaxed);
                 let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
                 return;

@@ -31,12 +31,12 @@ pub(super) struct DesignMatrix {
     unit: Vec<Vec<f64>>,
     norms: Vec<f64>,
     gram: Vec<f64>,
-    likely: usize,
+    likely_count: usize,
 }
 
 impl DesignMatrix {
-    /// Prepares the columns. Columns in `likely` are also tried in larger combinations.
-    pub fn new(columns: &[Vec<f64>], likely: impl Fn(usize) -> bool) -> Self {
+    /// Prepares the columns. Likely columns are also tried in larger combinations.
+    pub fn new(columns: &[Vec<f64>], is_likely: impl Fn(usize) -> bool) -> Self {
         let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
         let usable: Vec<usize> = (0..columns.len())
             .filter(|&index| {
@@ -44,9 +44,9 @@ impl DesignMatrix {
                 norm > 0.0 && norm.is_finite()
             })
             .collect();
-        let mut indices: Vec<usize> = usable.iter().copied().filter(|&index| likely(index)).collect();
+        let mut indices: Vec<usize> = usable.iter().copied().filter(|&index| is_likely(index)).collect();
         let likely_count = indices.len();
-        indices.extend(usable.into_iter().filter(|&index| !likely(index)));
+        indices.extend(usable.into_iter().filter(|&index| !is_likely(index)));
         let norms: Vec<f64> = indices.iter().map(|&index| norm(&columns[index])).collect();
         let unit: Vec<Vec<f64>> = indices
             .iter()
@@ -62,7 +62,7 @@ impl DesignMatrix {
                 gram[two * count + one] = product;
             }
         }
-        Self { indices, unit, norms, gram, likely: likely_count }
+        Self { indices, unit, norms, gram, likely_count }
     }
 
     /// Finds proposals for `target`, in the order of their sizes. `accept` is called with each proposal, and returns
@@ -79,8 +79,8 @@ impl DesignMatrix {
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
         let problem = FitProblem { columns: self, fits: &fits, square };
         let all = self.indices.len();
-        let of_triples = if all > MAX_FOR_TRIPLES { self.likely.min(MAX_FOR_TRIPLES) } else { all };
-        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MAX_FOR_QUADRUPLES))] {
+        let of_triples = if all > MAX_FOR_TRIPLES { self.likely_count.min(MAX_FOR_TRIPLES) } else { all };
+        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely_count.min(MAX_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
             problem.search(&mut PartialSelection::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solve(chosen, &fits)
@@ -93,7 +93,7 @@ impl DesignMatrix {
                 return accepted;
             }
         }
-        let pursued = [self.likely, self.indices.len()].map(|among| self.find_by_pursuit(target, &fits, among));
+        let pursued = [self.likely_count, self.indices.len()].map(|among| self.find_by_pursuit(target, &fits, among));
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 

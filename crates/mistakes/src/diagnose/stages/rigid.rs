@@ -123,7 +123,7 @@ fn explain_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
 /// Returns the explanation of steps whose polynomials are right but whose end states are wrong: the velocities of zones
 /// with right positions.
 fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
-    let mut measured = MotionErrors::default();
+    let mut errors = MotionErrors::default();
     for facts in ends {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
@@ -138,10 +138,10 @@ fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
             if group.must_stop(scene) {
                 return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
             }
-            measured.measure_velocities(scene, &facts.before, actual, &group);
+            errors.measure_velocities(scene, &facts.before, actual, &group);
         }
     }
-    let (wrong, details) = measured.describe();
+    let (wrong, details) = errors.describe();
     if wrong.is_empty() {
         return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
     }
@@ -159,7 +159,7 @@ struct ZoneMotions {
     bent_large_zones: usize,
     bent_single_zones: usize,
     bent_stops: usize,
-    measured: MotionErrors,
+    errors: MotionErrors,
 }
 
 impl ZoneMotions {
@@ -180,7 +180,7 @@ impl ZoneMotions {
                     if result == ZoneResult::Bent {
                         *(if is_one { &mut self.bent_single_zones } else { &mut self.bent_large_zones }) += 1;
                     }
-                    self.measured.measure_motion(scene, &first, zone);
+                    self.errors.measure_motion(scene, &first, zone);
                 }
                 _ => {}
             }
@@ -230,7 +230,7 @@ impl ZoneMotions {
         if wrong == 0 || self.bent_stops > 0 {
             return (wrong > 0).then(|| new_observation(StageFault::AfterRounds, Vec::new(), wrong));
         }
-        let (mut what, details) = self.measured.describe();
+        let (mut what, details) = self.errors.describe();
         if self.bent_single_zones + self.bent_large_zones > 0 {
             what.insert(
                 what.iter().position(|motion| *motion != WrongMotion::Center).unwrap_or(what.len()),

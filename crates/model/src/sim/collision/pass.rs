@@ -89,7 +89,7 @@ impl Detector {
         self.counts
     }
 
-    /// Checks every pair between `q_start` and `q_end`. After a hit, calls `react` with the end positions before the
+    /// Checks every pair between `q_start` and `q_end`. After a hit, calls `respond` with the end positions before the
     /// next pair is checked.
     ///
     /// # Errors
@@ -102,7 +102,7 @@ impl Detector {
         q_start: &[f64],
         q_end: &mut [f64],
         observer: &mut O,
-        mut react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+        mut respond: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     ) -> Result<(), StepError> {
         observer.begin_pass(pass);
         observer.observe_positions(q_start, q_end);
@@ -113,9 +113,9 @@ impl Detector {
         let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
         let (mut cursor, mut hits) = (PassCursor::from_first(0), 0);
         if self.has_lanes && !matches!(observer.wanted_pairs(), WantedPairs::Calls) {
-            hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut cursor)?;
+            hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut respond, &mut cursor)?;
         }
-        let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
+        let mut context = PassContext { pass, bodies, q_start, q_end, observer, respond, hits };
         while cursor.first < bodies.particle_count() {
             let first = cursor.first;
             for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.object_counts().remaining_row(cursor)) {
@@ -144,7 +144,7 @@ impl Detector {
         q_start: &[f64],
         q_end: &mut [f64],
         observer: &mut O,
-        react: &mut impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
+        respond: &mut impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
         cursor: &mut PassCursor,
     ) -> Result<usize, StepError> {
         let step = self.step;
@@ -159,7 +159,7 @@ impl Detector {
             let Some(impulse) = self.blocks.find_next_hit(input, cursor, &mut self.counts, bytes)? else { break };
             hits += 1;
             observer.observe_hit(impulse.pair);
-            if react(observer, &impulse, q_end) == Reaction::Moved {
+            if respond(observer, &impulse, q_end) == Reaction::Moved {
                 let moved = self.displace(bodies, impulse.pair, q_start, q_end);
                 let input = PassInput { bodies, step, q_start, displacements: &self.displacements };
                 is_on = self.blocks.refresh(input, moved);
@@ -213,7 +213,7 @@ impl Detector {
         let Decision::Hit { time, normal } = decision else { return Ok(()) };
         context.hits += 1;
         context.observer.observe_hit(pair);
-        if (context.react)(context.observer, &Impulse { pair, normal, time }, context.q_end) == Reaction::Moved {
+        if (context.respond)(context.observer, &Impulse { pair, normal, time }, context.q_end) == Reaction::Moved {
             self.displace(bodies, pair, q_start, context.q_end);
         }
         Ok(())
@@ -236,6 +236,6 @@ struct PassContext<'a, O, R> {
     q_start: &'a [f64],
     q_end: &'a mut [f64],
     observer: &'a mut O,
-    react: R,
+    respond: R,
     hits: usize,
 }
