@@ -57,8 +57,8 @@ impl WrongReason {
     }
 
     /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
-    /// is the named mistake, and not by a decision that round-off may change. With `is_only_reason`, the reason must be the
-    /// first one that the scene shows, without other mistakes that have the same effect.
+    /// is the named mistake, and not by a decision that round-off may change. With `is_only_reason`, the reason must be
+    /// the first one that the scene shows, without other mistakes that have the same effect.
     pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_only_reason: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, seen) else { return false };
         match (self, detail) {

@@ -54,8 +54,8 @@ pub fn describe_with_alternatives(explanation: &Explanation) -> String {
 }
 
 /// Returns lines with the exact form of the mistake: the terms of each coefficient, and the weights of the terms. The
-/// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, its term is
-/// enough, and lines about weights are left out.
+/// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, its term
+/// is enough, and lines about weights are left out.
 pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
