@@ -397,7 +397,7 @@ fn read_note(
         !["https://", "http://"].iter().any(|start| address.starts_with(start)) || address.contains(char::is_whitespace)
     };
     if let Some(link) = link.as_ref().filter(leads_elsewhere) {
-        problems.push((link.span(), "link must be an address that begins with https:// or http://".to_owned()));
+        problems.push((link.span(), "link must be a URL that begins with https:// or http://".to_owned()));
     }
     let note = CourseNote { text, link: link.map(Spanned::into_inner), points };
     (note != CourseNote::default()).then_some(note)

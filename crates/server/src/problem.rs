@@ -84,7 +84,7 @@ problems! {
     /// The named thing does not exist, or the sender must not learn whether it exists.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
-        "check the address, or go back and check what you typed";
+        "check the URL, or go back and check what you typed";
     /// The named thing existed, but has been removed.
     removed(): 410, "removed", "Removed",
         "the upload and its reports were removed; the grade and its history stay",

@@ -55,7 +55,7 @@ fn a_course_s_own_words_have_a_known_key_and_an_address() {
     }
     let unknown = read(&text("no-such-slip", "https://example.edu")).unwrap_err().to_string();
     assert!(unknown.contains("no mistake has the key \"no-such-slip\"; `fosssim-oracle sample --list`"), "{unknown}");
-    assert!(error.contains("5:8: link must be an address that begins with https:// or http://"), "{error}");
+    assert!(error.contains("5:8: link must be a URL that begins with https:// or http://"), "{error}");
 }
 
 #[test]

@@ -65,7 +65,7 @@ impl PendingFindings {
         for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
             let rescaled = (own_coefficient * sum_actual) / sum_own;
             let residual = (coefficient - rescaled).abs();
-            // In the original NaN passes, because it tests whether the distance is larger than the bound.
+            // In the original, a NaN passes, because the original tests whether the distance is larger than the bound.
             if residual > PARITY_COEFFICIENT_DIFFERENCE {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;

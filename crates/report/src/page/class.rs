@@ -85,7 +85,7 @@ struct Cluster<'a> {
 
 impl ClassContent<'_> {
     /// Returns the URL of a scene on a submission's page.
-    fn address(&self, grade: &Grade, scene: &str) -> String {
+    fn scene_url(&self, grade: &Grade, scene: &str) -> String {
         format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
     }
 
@@ -127,7 +127,7 @@ impl ClassContent<'_> {
             Cluster {
                 heading: to_one_line(&describe_likely(first, mistake)),
                 members: members.clone(),
-                scene: scene.map(|scene| (to_one_line(&scene.scene), self.address(first, &scene.scene))),
+                scene: scene.map(|scene| (to_one_line(&scene.scene), self.scene_url(first, &scene.scene))),
                 note: first.course_note(mistake),
                 smallest: smallest
                     .filter(|small| is_named_in(mistake, &small.explanations))
@@ -160,7 +160,7 @@ impl ClassContent<'_> {
     /// Returns the URL of the first submission's page on which the scene is described, because it is wrong.
     fn find_scene_with_mistake(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
-        self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
+        self.class.grades.iter().find(fails).map(|grade| self.scene_url(grade, name))
     }
 }
 

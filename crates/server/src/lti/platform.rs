@@ -87,7 +87,7 @@ impl PlatformSettings {
         {
             ensure(
                 address(text, over_http).is_some(),
-                Problem::invalid(format!("{name} must be an address that begins with https://")),
+                Problem::invalid(format!("{name} must be a URL that begins with https://")),
             )?;
         }
         if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))

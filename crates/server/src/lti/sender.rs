@@ -176,7 +176,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Re
 /// Returns the URL to which a column's scores are sent: the column's URL with `/scores` at the end of the path
 /// (AGS 3.4).
 fn scores_address(line_item: &str) -> Result<String, ServiceFault> {
-    let invalid = || ServiceFault::Rejected("the address of the grade book's column is invalid".to_owned());
+    let invalid = || ServiceFault::Rejected("the URL of the grade book's column is invalid".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| invalid())?;
     url.path_segments_mut().map_err(|()| invalid())?.pop_if_empty().push("scores");
     Ok(url.into())

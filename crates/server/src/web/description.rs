@@ -167,7 +167,7 @@ fn complete_operation(operation: &mut Operation) {
     }
 }
 
-/// Completes the schema of a part of an address or a header, according to its name.
+/// Completes the schema of a part of a URL or a header, according to its name.
 fn complete_parameter(parameter: &mut Parameter) {
     let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
     let text = |pattern: &str| -> RefOr<Schema> {

@@ -22,7 +22,7 @@ pub(super) struct TextBody(pub(super) String);
 /// The fields of a form, from the body of a request, or from the query of a GET request.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// The names in an address. Names that the route does not have are empty.
+/// The names in a URL. Names that the route does not have are empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct AddressParts {
@@ -35,7 +35,7 @@ pub(super) struct AddressParts {
     pub(super) id: i64,
 }
 
-/// The query parameters in an address.
+/// The query parameters in a URL.
 pub(super) struct QueryInput<T>(pub(super) T);
 
 /// The query parameter with the newest event that the sender of a change has seen.
@@ -171,7 +171,7 @@ impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let found = Path::<Self>::from_request_parts(parts, state).await;
-        // The text in the address is not a number.
+        // The text in the URL is not a number.
         let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
         let is_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
         let what = if is_submission { "submission" } else { "page" };

@@ -18,8 +18,8 @@ use std::time::Instant;
 /// The maximum duration of a sign-in, in milliseconds.
 const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 
-/// The maximum number of sign-ins that an address may begin per minute at one service. All people in a lecture hall may
-/// share an address.
+/// The maximum number of sign-ins that one IP address may begin per minute at one service. All people in a lecture hall
+/// may share an address.
 const MAX_LOGINS: u32 = 3000;
 
 /// The message for a sign-in that began elsewhere, was already answered, or took too long.

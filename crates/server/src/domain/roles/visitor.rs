@@ -28,7 +28,7 @@ pub struct Visitor {
     pub(in crate::domain) secrets: Secrets,
 }
 
-/// The maximum number of sign-ins by link or token from one address per minute; a whole lecture hall may share an
+/// The maximum number of sign-ins by link or token from one IP address per minute; a whole lecture hall may share an
 /// address.
 const MAX_SIGN_INS: u32 = 600;
 

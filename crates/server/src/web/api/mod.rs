@@ -1,6 +1,6 @@
 //! The HTTP API. The first argument of each handler names the role that it serves.
 
-/// Declares operations that return data, one per row. A row has the method, the address, the tag and the name; then the
+/// Declares operations that return data, one per row. A row has the method, the path, the tag and the name; then the
 /// role that the operation serves, the parts of the path and the body; and last the type of the answer. The status
 /// of all answers comes before the rows.
 macro_rules! answers {

@@ -73,7 +73,7 @@ pub(super) async fn artifact(
     Ok((kind, download::whole_answer(opened, None)).into_response())
 }
 
-/// Stores a report for a job that the worker holds. The bytes must match the digest in the address.
+/// Stores a report for a job that the worker holds. The bytes must match the digest in the URL.
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
