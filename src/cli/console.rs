@@ -84,7 +84,7 @@ pub(super) fn width() -> Option<usize> {
 ///
 /// # Errors
 ///
-/// Fails like [`print`].
+/// Fails like [`print()`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
         Some(width) => print(wrap::wrap(text, width)),
@@ -96,7 +96,7 @@ pub(super) fn report(text: &str) -> Result<()> {
 ///
 /// # Errors
 ///
-/// Fails like [`print`].
+/// Fails like [`print()`].
 pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<()> {
     match format {
         TextOrJson::Text => report(&text()),

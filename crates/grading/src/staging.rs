@@ -105,14 +105,14 @@ pub(super) fn open_in_folder(folder: &Path, name: &str) -> Result<File, CollectE
     opened.open_file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
 
-/// Returns the digest of a file without copying it. For links, and for files that [`Recipe::open_file`] rejects,
+/// Returns the digest of a file without copying it. For links, and for files that [`collect::open_file`] rejects,
 /// returns `None`.
 pub fn digest_file(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
     if length <= MAX_FOLDER_BYTES { digest_open_file(file) } else { None }
 }
 
-/// Returns the digest of the file that [`Recipe::stage_file_in`] would copy, without copying it.
+/// Returns the digest of the file that `Recipe::stage_file_in` would copy, without copying it.
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&ProgramFile>) -> Option<blake3::Hash> {
     let file = open_in_folder(folder, name).ok()?;
     if belongs_to_another(&file, noted).ok()? { None } else { digest_open_file(file) }

@@ -1,6 +1,6 @@
 //! The form in which results are stored.
 //!
-//! [`VERSION`] must be increased if the meaning of any part of a result changes, here or in `fosssim_findings`.
+//! [`FORM_VERSION`] must be increased if the meaning of any part of a result changes, here or in `fosssim_findings`.
 use super::{key::ResultKey, result::SceneResult};
 use serde::{Deserialize, Serialize};
 

@@ -57,7 +57,7 @@ impl Drop for TemporaryFolder {
 pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
-    /// Returns a [kept](Self::keep) folder, which contains only files of the grader, or a new one.
+    /// Returns a [kept](Self::keep_folder) folder, which contains only files of the grader, or a new one.
     pub(super) fn take_folder(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         kept.map_or_else(|| TemporaryFolder::create("run"), Ok)

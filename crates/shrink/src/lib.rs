@@ -1,6 +1,6 @@
 //! Finds the smallest scene on which a program is still wrong for the same reason.
 //!
-//! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`step_starts`]).
+//! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`step_starts()`]).
 //! From there [`reduce`] removes bodies, edges, half-planes and forces, simplifies features, and takes rounder numbers,
 //! as long as the program stays wrong for its [`WrongReason`]. The order of attempts is fixed, and the result is
 //! 1-minimal: no single attempt makes it smaller (delta debugging, Zeller and Hildebrandt 2002).

@@ -34,7 +34,7 @@ impl PendingFindings {
         }
     }
 
-    /// Records the fault of a polynomial of the current step and frame that does not [pass](super::passes).
+    /// Records the fault of a polynomial of the current step and frame, if it does not match the reference's.
     pub(crate) fn compare(
         &mut self,
         (step, frame): (u32, u64),

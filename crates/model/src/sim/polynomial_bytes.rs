@@ -36,7 +36,7 @@ impl PolynomialBytes {
         (self.start, self.count, self.max_modulus) = (self.used_bytes, 0, 0.0);
     }
 
-    /// Returns the range of the list within [all](Self::all) bytes.
+    /// Returns the range of the list within [all bytes](Self::all_bytes).
     pub(crate) fn range(&self) -> Range<usize> {
         self.start..self.used_bytes
     }
@@ -105,7 +105,7 @@ impl PolynomialBytes {
         &mut self.bytes[self.used_bytes..]
     }
 
-    /// Adds the bytes that were written into the [room](Self::room) to the list.
+    /// Adds the bytes that were written into the [reserved](Self::reserve) memory to the list.
     #[inline]
     pub(super) fn count_added(&mut self, bytes: usize, polynomials: usize) {
         self.used_bytes += bytes;

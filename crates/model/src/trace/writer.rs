@@ -76,8 +76,8 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Writes one record with encoded lists. While the writer [borrows](Self::borrows), the log keeps its polynomials.
-    /// Once it is [full](Self::is_full), it takes two more records, then they must be written.
+    /// Writes one record with encoded lists. While lists are [unwritten](Self::has_unwritten), the log keeps its
+    /// polynomials. Once the writer is [full](Self::is_full), it takes two more records, then they must be written.
     pub(super) fn write_record(&mut self, state: &State, log: &Log) {
         log.write_head(&mut self.buffer, self.layout, state);
         if self.layout.has_polynomials {

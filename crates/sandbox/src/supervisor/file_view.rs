@@ -65,7 +65,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     close_root()
 }
 
-/// Builds the root without the run's working folder and processes. [`complete`] adds them to a copy.
+/// Builds the root without the run's working folder and processes. [`complete_view`] adds them to a copy.
 ///
 /// # Errors
 ///

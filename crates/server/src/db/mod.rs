@@ -97,7 +97,7 @@ pub enum Dialect {
 }
 
 impl Database {
-    /// Opens a database, and creates a SQLite file if it does not exist; [`migrate`] creates the tables.
+    /// Opens a database, and creates a SQLite file if it does not exist; [`migrate()`] creates the tables.
     ///
     /// # Errors
     ///

@@ -12,7 +12,7 @@ const MAX_DISTANT_PAIRS: usize = 5_000;
 
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
 /// student of the scene's assignment. Missing records and nearby pairs are searched separately
-/// ([`near`](super::super::near)).
+/// ([`near_pairs`](super::super::near_pairs)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_elsewhere =
         |row: &Row| row.area == Area::NearPairs || matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
