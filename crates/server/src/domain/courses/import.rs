@@ -40,22 +40,30 @@ fn find_column(heading: &str) -> Option<usize> {
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
-/// Returns the positions of the four columns according to the headings in the first line.
-fn read_headings(cells: &[String]) -> Result<[Option<usize>; 4], Problem> {
+/// Returns the positions of the four columns according to the headings in the first line; `None` if the line has no
+/// headings.
+fn read_headings(cells: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
+    if cells.iter().all(|word| find_column(word).is_none()) {
+        return Ok(None);
+    }
     let mut columns = [None; COLUMNS.len()];
     for (place, word) in cells.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
         if find_column(word).is_some_and(|column| columns[column].replace(place).is_some()) {
             return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
-    let missing = "the first line must name the columns, at least name and login: name,login,email,role";
-    ensure(columns[0].is_some() && columns[1].is_some(), Problem::invalid(missing))?;
-    Ok(columns)
+    match columns[1] {
+        Some(_) => Ok(Some(columns)),
+        None => Err(Problem::invalid("the first line names columns, but not login")),
+    }
 }
 
 /// Reads a table. Errors are reported in the lines that contain them.
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
+    if first.trim_start().starts_with(['{', '[']) {
+        return Err(Problem::invalid("this is JSON, not a table"));
+    }
     // Spreadsheets of other countries use other separators.
     let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
     let mut reader = csv::ReaderBuilder::new()
@@ -64,7 +72,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         .flexible(true)
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    let mut columns = [None; COLUMNS.len()];
+    let mut columns: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
     let mut headings = Vec::new();
     let mut logins = BTreeSet::new();
     let mut lines = Vec::new();
@@ -73,8 +81,10 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let record = record.map_err(|error| Problem::invalid(format!("the table can't be read: {error}")))?;
         let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
         let cells: Vec<String> = record.iter().map(cell).collect();
-        if index == 0 {
-            (columns, headings) = (read_headings(&cells)?, cells);
+        if index == 0
+            && let Some(found) = read_headings(&cells)?
+        {
+            (columns, headings) = (found, cells);
             continue;
         }
         let is_extra = |(place, word): &(usize, &String)| !word.is_empty() && !columns.contains(&Some(*place));
@@ -96,14 +106,14 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("the login appears twice in the table".to_owned()),
             Ok(()) if !email.is_empty() && !email.contains('@') => Some("the e-mail address has no @".to_owned()),
-            Ok(()) if unused.is_none() => Some("this line has more fields than the first one".to_owned()),
+            Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
         let unused = unused.unwrap_or_default();
         lines.push(MemberLine { line, name, login, email, role, unused, error, link: None });
         ensure(lines.len() <= MAX_LINES, Problem::invalid(format!("a table has at most {MAX_LINES} lines")))?;
     }
-    if lines.is_empty() { Err(Problem::invalid("the table has no members")) } else { Ok(lines) }
+    if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
 }
 
 impl Staff {
@@ -145,26 +155,26 @@ mod tests {
     #[test]
     fn tables_are_read_as_spreadsheets_write_them() {
         let lines = |text: &str| read(text).expect("a table");
-        let columns = |text: &str| lines(&format!("name,login,email,role\n{text}"));
-        let plain = columns("Ada Lovelace,ada,ada@example.org,staff\n\"Babbage, C.\",Charles\n");
+        let plain = lines("Ada Lovelace,ada,ada@example.org,staff\n\"Babbage, C.\",Charles\n");
         assert_eq!((plain[0].role.as_str(), plain[1].role.as_str()), ("staff", "student"));
-        assert_eq!((plain[1].name.as_str(), plain[1].login.as_str(), plain[1].line), ("Babbage, C.", "charles", 3));
+        assert_eq!((plain[1].name.as_str(), plain[1].login.as_str(), plain[1].line), ("Babbage, C.", "charles", 2));
         let named = lines("\u{feff}Login;Role;Name\r\nada;student;Ada\r\n");
         assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
         let others = lines("User name;E-Mail;NAME;\nada;ada@example.org;Ada\n");
         assert_eq!((others[0].login.as_str(), others[0].email.as_str()), ("ada", "ada@example.org"));
-        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Login\nada,Ada,eve\n", "who,what\nAda,ada\n", "Ada,ada\n"] {
+        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Login\nada,Ada,eve\n"] {
             assert!(read(bad).is_err(), "{bad}");
         }
         let more = lines("Login,Name,Number,Group\nada,Ada,7,\n");
         assert_eq!((more[0].unused.join(", "), &more[0].error), ("Number".to_owned(), &None));
-        assert!(columns("Ada,ada,,student,7\n")[0].error.is_some(), "nothing is dropped in silence");
+        assert!(lines("Ada,ada,,student,7\n")[0].error.is_some(), "nothing is dropped in silence");
         assert!(lines("Login,Name\nada,Ada,7\n")[0].error.is_some());
-        let wrong = columns("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
+        let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
         let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
         assert_eq!(errors, [false, true, true, true, true]);
-        let both = columns("Eve,e v e,,boss\n")[0].error.clone().expect("errors");
+        let both = lines("Eve,e v e,,boss\n")[0].error.clone().expect("errors");
         assert!(both.contains("a login") && both.contains("a role"), "{both}");
+        assert!(lines("who,what,post\nAda,ada,ada@example.org\n")[0].error.is_some(), "an unknown heading");
         assert!(read("").is_err() && read(r#"[{"name": "Ada", "login": "ada"}]"#).is_err());
     }
 }

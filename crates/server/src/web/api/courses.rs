@@ -53,7 +53,7 @@ pub(super) struct Preview {
     preview: bool,
 }
 
-/// Adds all members in a table. The first line names the columns, such as `name,login,email,role`. If any
+/// Adds all members in a table. The columns are `name,login,email,role`, or those that its first line names. If any
 /// line has an error, nothing is changed.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
     params(("preview" = Option<bool>, Query, description = "Only check the table"), SeenEvent),

@@ -39,7 +39,7 @@ fn import(staff: &Client, backwards: bool) -> u16 {
     if backwards {
         lines.reverse();
     }
-    let table = format!("name,login,email,role\n{}", lines.join("\n"));
+    let table = lines.join("\n");
     staff.send("POST", &format!("{BASE}/members"), &[("Content-Type", "text/csv")], table.as_bytes()).status
 }
 
