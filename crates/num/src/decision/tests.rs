@@ -355,12 +355,12 @@ proptest! {
         ..ProptestConfig::default()
     })]
 
-    /// A certain decision holds for 200 choices of coefficients within the bounds, including the extreme ones.
+    /// A certain decision holds for 100 choices of coefficients within the bounds, including the extreme ones.
     #[test]
     fn certain_decisions_hold_for_all_choices(
         lists in lists(),
         coarse in any::<bool>(),
-        choices in prop::collection::vec(prop::array::uniform24(-1.0..1.0_f64), 200),
+        choices in prop::collection::vec(prop::array::uniform24(-1.0..1.0_f64), 100),
     ) {
         let units = if coarse { 1e13 } else { 64.0 };
         let decision = decided(&lists, units);
