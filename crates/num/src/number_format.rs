@@ -1,8 +1,13 @@
 //! Prints numbers as C++ streams do by default (`%g` with six significant digits, `oracle-behavior.md`, head), and in
 //! the shortest exact form.
 
+use std::fmt::Write;
+
 /// The number of significant digits of C++ streams.
 const SIGNIFICANT_DIGITS: i32 = 6;
+
+/// The length of the longest text, `-1.79769e+308`.
+const MAX_LENGTH: usize = 13;
 
 /// Returns the number in the format `%g` with six significant digits, as printed by glibc: `0`, `-0`, `1e-05`,
 /// `0.00282843`, `1e+06`, `inf`, `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to
@@ -19,18 +24,42 @@ pub fn format_g(value: f64) -> String {
         return format!("{sign}0");
     }
     // The exponent after rounding decides between the two notations (999999.5 is 1e+06).
-    let scientific = format!("{:.5e}", value.abs());
+    let mut scientific = String::with_capacity(MAX_LENGTH);
+    // Writing to a string does not fail.
+    let _ = write!(scientific, "{:.5e}", value.abs());
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
-    let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
+    let (first, rest) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let mut text = String::with_capacity(MAX_LENGTH);
+    text += sign;
+    match exponent {
+        -4..0 => {
+            text += "0.";
+            (exponent..-1).for_each(|_| text.push('0'));
+            text += first;
+            text += rest.trim_end_matches('0');
+        }
+        0..SIGNIFICANT_DIGITS => {
+            let (integer, fraction) = rest.split_at(exponent.unsigned_abs() as usize);
+            text += first;
+            text += integer;
+            push_fraction(&mut text, fraction);
+        }
+        _ => {
+            text += first;
+            push_fraction(&mut text, rest);
+            let _ = write!(text, "e{exponent:+03}");
+        }
+    }
+    text
+}
+
+/// Adds the decimal point and the digits after it, without zeros at the end.
+fn push_fraction(text: &mut String, digits: &str) {
     let digits = digits.trim_end_matches('0');
-    if (-4..SIGNIFICANT_DIGITS).contains(&exponent) {
-        format!("{sign}{}", format_positional(digits, exponent))
-    } else {
-        let (first, rest) = digits.split_at(1);
-        let point = if rest.is_empty() { "" } else { "." };
-        let exponent_sign = if exponent < 0 { '-' } else { '+' };
-        format!("{sign}{first}{point}{rest}e{exponent_sign}{:02}", exponent.unsigned_abs())
+    if !digits.is_empty() {
+        text.push('.');
+        *text += digits;
     }
 }
 
@@ -44,20 +73,6 @@ pub fn format_exact(value: f64) -> String {
         format!("{value:e}")
     } else {
         format_g(value)
-    }
-}
-
-/// Returns the digits `d.ddd` times ten to the power of `exponent`, written without an exponent.
-fn format_positional(digits: &str, exponent: i32) -> String {
-    if exponent < 0 {
-        let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);
-        return format!("0.{zeros}{digits}");
-    }
-    let integer_digits = exponent.unsigned_abs() as usize + 1;
-    if digits.len() <= integer_digits {
-        format!("{digits:0<integer_digits$}")
-    } else {
-        format!("{}.{}", &digits[..integer_digits], &digits[integer_digits..])
     }
 }
 
