@@ -11,6 +11,9 @@ use fosssim_num::vector::vector_at;
 /// The maximum number of particles per edge in scenes whose boxes have four axes.
 const PARTICLES_PER_EDGE: usize = 100;
 
+/// The maximum number of particles whose boxes are compared without rows.
+const MAX_WITHOUT_ROWS: usize = 256;
+
 /// The order of bodies after the previous search.
 ///
 /// The order is part of a state, because a force depends on it if bodies have the same lower end.
@@ -30,7 +33,7 @@ pub(super) struct Sweep {
     edge_boxes: Vec<BodyExtent>,
     /// The rows of the particles' boxes.
     rows: Rows,
-    /// Whether the ends of all particles' boxes on x and y are finite, and in order. If not, rows cannot be used.
+    /// Whether rows are used. They need many boxes, whose ends on x and y are finite and in order.
     has_rows: bool,
     /// The memory for sorting boxes.
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
@@ -84,7 +87,7 @@ impl Sweep {
         };
         sort(particle_boxes, radii.len(), sort_buffers, particle);
         sort(edge_boxes, edges.len(), sort_buffers, edge);
-        self.has_rows = particle_boxes.iter().all(BodyExtent::is_finite);
+        self.has_rows = particle_boxes.len() > MAX_WITHOUT_ROWS && particle_boxes.iter().all(BodyExtent::is_finite);
         if self.has_rows {
             self.rows.assign(particle_boxes);
         }

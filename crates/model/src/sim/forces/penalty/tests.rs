@@ -121,16 +121,19 @@ fn with_edges_boxes_have_four_axes() {
     assert!(searched(&scene, &[&x]).is_empty());
 }
 
-/// Many boxes have different sizes, and some begin at NaN: in every step the search finds exactly the boxes that
-/// overlap.
+/// Boxes have different sizes, and some begin at NaN: in every step the search finds exactly the boxes that overlap.
 #[test]
 fn the_search_finds_what_overlaps_and_nothing_else() {
+    // With and without rows.
+    [150, 300].into_iter().for_each(check_search);
+}
+
+fn check_search(count: usize) {
     let mut state = 1_u64;
     let mut random = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
-    let count = 150;
     // Some boxes are much larger than most.
     let radii: Vec<f64> = (0..count).map(|_| 0.02 + 0.8 * std::iter::repeat_n(random(), 8).product::<f64>()).collect();
     let scene = scene(radii.iter().map(|&radius| particle((0.0, 0.0), (0.0, 0.0), 1.0, radius)).collect());
