@@ -26,6 +26,7 @@ const STOP_MISTAKES: &[Mistake] = &[
     Mistake::FailsafeStopsFixedOnly,
     Mistake::FailsafeStopKeepsPosition,
     Mistake::FailsafeStopKeepsVelocity,
+    Mistake::FailsafeFixedSkipped,
 ];
 
 /// Returns the mistake in the motion of a zone.
@@ -39,6 +40,9 @@ pub fn move_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State)
     if mistake == Some(Mistake::FailsafeEmpty) {
         return;
     }
+    let skips_fixed = world.student.makes(Mistake::FailsafeFixedSkipped);
+    let is_used = |particle: &usize| !(skips_fixed && world.is_fixed(*particle));
+    let zone = &Zone { particles: zone.particles.iter().copied().filter(is_used).collect(), ..*zone };
     if is_stopped(world, zone) {
         stop_zone(world, zone, q_start, state);
     } else {
@@ -228,6 +232,7 @@ impl<'a> RigidBody<'a> {
         (self.momentum, self.inertia) = (momentum, inertia);
         self.angle = match self.mistake() {
             Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
+            Some(Mistake::FailsafeRotationAbsolute) => (momentum / inertia).abs(),
             Some(Mistake::FailsafeNoRotation) => 0.0,
             Some(Mistake::FailsafeTinyTurnIgnored) if (momentum / inertia).abs() < 1e-3 => 0.0,
             Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
@@ -281,6 +286,7 @@ impl<'a> RigidBody<'a> {
             let v = match self.mistake() {
                 Some(Mistake::FailsafeVelocityKept) => before,
                 Some(Mistake::FailsafeVelocityNoStep) => x - start,
+                Some(Mistake::FailsafeVelocityTimesStep) => h * (x - start),
                 Some(Mistake::FailsafeVelocityAdded) => before + divide(x - start, h),
                 Some(Mistake::FailsafeVelocityFromPrediction) => divide(x - vector_at(&state.x, particle), h),
                 Some(Mistake::FailsafeVelocityOfCenter) => divide(self.shift, h),

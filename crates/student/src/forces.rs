@@ -41,7 +41,9 @@ fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64
             let of = if student.makes(StepMistake::DragOfPositions) { x } else { v };
             for i in 0..count {
                 let speed = if student.makes(StepMistake::DragQuadratic) { length(vector_at(v, i)) } else { 1.0 };
-                world.contribute(g, TermPart::from_term(Term::Drag, i), speed * (coefficient * vector_at(of, i)));
+                let of = vector_at(of, i);
+                let of = if student.makes(StepMistake::DragSquares) { of.component_mul(&of.abs()) } else { of };
+                world.contribute(g, TermPart::from_term(Term::Drag, i), speed * (coefficient * of));
             }
         }
         Force::Vortex { .. } => add_vortex(force, x, v, g),
@@ -62,6 +64,8 @@ fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64])
     let stretch = match () {
         () if makes(StepMistake::SpringNoRestLength) => l,
         () if makes(StepMistake::SpringRestLengthSign) => l + rest_length,
+        () if makes(StepMistake::SpringRestLengthInteger) => l - rest_length.trunc(),
+        () if makes(StepMistake::SpringPullsOnly) => (l - rest_length).max(0.0),
         () if makes(StepMistake::SpringStrain) => (l - rest_length) / rest_length,
         () => l - rest_length,
     };
@@ -78,7 +82,7 @@ fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64])
     let damped = if makes(StepMistake::SpringDampingAllDirections) {
         damping * w
     } else {
-        let speed = n.dot(&w);
+        let speed = if makes(StepMistake::SpringDampingSpeed) { length(w) } else { n.dot(&w) };
         apply_slips(student, Term::SpringDamping, damping * speed, speed) * n
     };
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
@@ -105,6 +109,8 @@ fn add_gravitation(world: &World, (first, second): (usize, usize), constant: f64
         () if makes(StepMistake::GravitationNoMasses) => (1.0, 1.0),
         () if makes(StepMistake::GravitationOwnMass) => (world.masses[2 * first], world.masses[2 * first]),
         () if makes(StepMistake::GravitationOtherMass) => (world.masses[2 * second], world.masses[2 * second]),
+        () if makes(StepMistake::GravitationMassSum) => (1.0, world.masses[2 * first] + world.masses[2 * second]),
+        () if makes(StepMistake::GravitationMassIndex) => (world.masses[first], world.masses[second]),
         () => (world.masses[2 * second], world.masses[2 * first]),
     };
     let pull = constant * m1 * m2 / (r * r) * n;

@@ -34,7 +34,7 @@ pub fn handle(
     }
     if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
         let before = world.student.makes(Mistake::GeometricVelocitiesKept).then(|| state.v.clone());
-        respond_geometrically(world, q_start, state, log)?;
+        respond_geometrically(world, q_start, max_iterations, state, log)?;
         if let Some(before) = before {
             state.v = before;
         }
@@ -46,6 +46,7 @@ pub fn handle(
 fn respond_geometrically(
     world: &World,
     q_start: &[f64],
+    max_iterations: i32,
     state: &mut State,
     log: &mut StepLog,
 ) -> Result<(), StepFailure> {
@@ -60,6 +61,9 @@ fn respond_geometrically(
     }
     let mut moved: Vec<Zone> = Vec::new();
     loop {
+        if student.makes(Mistake::GeometricCapped) && i64::from(round) >= i64::from(max_iterations) {
+            return Ok(());
+        }
         if student.makes(Mistake::GeometricRestarts) {
             state.clone_from(&prediction);
         }

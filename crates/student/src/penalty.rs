@@ -186,6 +186,8 @@ pub fn closest_alpha(student: Student, term: Term, alpha: f64, limited: impl Fn(
             Slip::Unclamped => Some(alpha),
             Slip::Mirrored => Some(limited(1.0 - alpha)),
             Slip::Negated => Some(limited(-alpha)),
+            Slip::Truncated => Some(limited(alpha.trunc())),
+            Slip::Rounded => Some(limited(alpha).round()),
             Slip::Middle => Some(0.5),
             _ => found,
         })

@@ -52,16 +52,19 @@ impl World {
     /// Returns the weight of a numeric quantity in this student's program, by its slips except those of the whole.
     pub fn weight(&self, term: Term, length: f64) -> f64 {
         let own = self.student.edits().filter(|edit| edit.term == term);
-        own.map(|edit| self.factor(edit.slip, 0, length)).product()
+        own.map(|edit| self.factor(edit, 0, length)).product()
     }
 
     /// Returns the weight of a particle's part of a quantity, with the slips of the whole.
     pub fn whole_weight(&self, term: Term, particle: usize, length: f64) -> f64 {
-        self.student.slips(term).map(|slip| self.factor(slip, particle, length)).product()
+        let all = self.student.edits().filter(|edit| edit.term.covers(term));
+        all.map(|edit| self.factor(edit, particle, length)).product()
     }
 
     /// Returns the factor of a slip.
-    fn factor(&self, slip: Slip, particle: usize, length: f64) -> f64 {
+    fn factor(&self, Edit { term, slip }: Edit, particle: usize, length: f64) -> f64 {
+        let mass = self.masses[2 * particle];
+        let of_mass = |used: f64| if term.row().mass < 0 { mass / used } else { used / mass };
         let power = |base: f64, by: i8| {
             let product: f64 = (0..by.unsigned_abs()).map(|_| base).product();
             if by < 0 { 1.0 / product } else { product }
@@ -71,8 +74,10 @@ impl World {
             Slip::Sign => -1.0,
             Slip::Doubled => 2.0,
             Slip::Halved => 0.5,
-            Slip::Mass(by) => power(self.masses[2 * particle], by),
-            Slip::MassOfFirst => self.masses[0] / self.masses[2 * particle],
+            Slip::Mass(by) => power(mass, by),
+            Slip::WholeMass => of_mass(mass.trunc()),
+            Slip::MassIndex => of_mass(self.masses[particle]),
+            Slip::MassOfFirst => of_mass(self.masses[0]),
             Slip::Step(by) => power(self.scene.time_step, by),
             Slip::Length(by) => power(length, by),
             _ => 1.0,
@@ -102,7 +107,7 @@ impl World {
                 Slip::FirstMass => value *= self.masses[2 * first],
                 Slip::XForBoth => value.y = value.x,
                 Slip::YForBoth => value.x = value.y,
-                slip => value *= self.factor(slip, particle, length),
+                _ => value *= self.factor(edit, particle, length),
             }
         }
         match (is_assigned, is_negative) {

@@ -31,7 +31,10 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
             }
             half_plane = student.makes(Mistake::ZonesFlagOfEdges);
         }
-        Object::HalfPlane(_) => half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag),
+        Object::HalfPlane(index) => {
+            half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag);
+            particles.extend(student.makes(Mistake::ZonesHalfPlaneIndex).then_some(index.min(all - 1)));
+        }
     }
     half_plane ^= student.makes(Mistake::ZonesFlagInverted) && !matches!(contact.pair.object, Object::Edge(_));
     Zone { particles, has_half_plane: half_plane }

@@ -246,7 +246,7 @@ pub fn detect(
     if student.makes(Mistake::ContactTimeSingle) {
         time = round_to_f32(time);
     }
-    if !is_within_step(student, time, world.scene.time_step) {
+    if !is_within_step(student, &motion, time, world.scene.time_step) {
         return Ok(None);
     }
     let time_unit = if student.makes(Mistake::ContactTimeScaled) { world.scene.time_step } else { 1.0 };
@@ -290,10 +290,12 @@ pub fn detect_contacts(
 }
 
 /// Returns whether a time of impact is within the step.
-fn is_within_step(student: Student, time: f64, time_step: f64) -> bool {
+fn is_within_step(student: Student, motion: &PairMotion, time: f64, time_step: f64) -> bool {
     let is_of_time = |mistake: &Mistake| mistake.area() == Area::Decision && !REJECTION_MISTAKES.contains(mistake);
     match student.mistakes().find(is_of_time) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
+        Some(Mistake::DecisionOpenEndParticles) if matches!(motion, PairMotion::Particles { .. }) => time < 1.0,
+        Some(Mistake::DecisionOpenEndHalfPlanes) if matches!(motion, PairMotion::HalfPlane { .. }) => time < 1.0,
         Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
         Some(Mistake::DecisionOpenInterval) => 0.0 < time && time < 1.0,
         Some(Mistake::DecisionNoUpperBound) => time < f64::INFINITY,

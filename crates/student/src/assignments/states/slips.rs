@@ -32,6 +32,8 @@ slips! {
     /// Multiplies the term by this power of the distance.
     Length(i8) "has another factor";
     FirstMass "is multiplied by the mass of the first of its two bodies";
+    WholeMass "uses the mass as a whole number, as an integer variable does";
+    MassIndex "reads the masses of other particles, because it counts places by particle";
     MassOfFirst "uses the mass of the first particle for all particles";
     XOnly "loses its vertical component";
     YOnly "loses its horizontal component";
@@ -69,6 +71,8 @@ slips! {
     Unclamped "uses the closest point of the whole line, even beyond the ends of the edge";
     Mirrored "measures from the wrong end of the edge";
     Negated "measures the closest point of an edge in the wrong direction from its first end";
+    Truncated "cuts alpha to a whole number, as an integer variable does";
+    Rounded "uses the nearer end of the edge instead of its closest point";
     Middle "uses the middle of the edge instead of its closest point";
     EndsOut "finds nothing beyond the ends of an edge";
     ToPoint "uses the point that defines the half-plane instead of its closest point";
@@ -122,7 +126,8 @@ pub(super) const BLOCKS: &[Slip] =
 impl Slip {
     /// Returns whether bodies without a force remain unaffected.
     pub fn keeps_distance(self) -> bool {
-        use Slip::{Always, EndRadius, Middle, Mirrored, Negated, ToPoint, Unclamped, Undivided};
-        !matches!(self, Always | EndRadius | Middle | Mirrored | Negated | ToPoint | Unclamped | Undivided)
+        use Slip::{Always, EndRadius, Middle, Mirrored, Negated, Rounded, ToPoint, Truncated, Unclamped, Undivided};
+        let moves_point = matches!(self, Middle | Mirrored | Negated | Rounded | ToPoint | Truncated | Unclamped);
+        !moves_point && !matches!(self, Always | EndRadius | Undivided)
     }
 }

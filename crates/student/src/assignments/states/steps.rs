@@ -7,21 +7,27 @@ rows! {
     StepMistake STEPS [Edit Edit] []
     Wrong Forces "steps.txt" {
         DragQuadratic "drag-quadratic";
+        DragSquares "drag-squares";
         DragOfPositions "drag-of-positions";
         SpringNoStiffness "spring-no-stiffness";
         SpringNoRestLength "spring-no-rest-length";
         SpringRestLengthSign "spring-rest-length-sign";
         SpringStrain "spring-strain";
+        SpringRestLengthInteger "spring-rest-length-integer";
+        SpringPullsOnly "spring-pulls-only";
         SpringDirection "spring-direction";
         SpringDirectionEverywhere "spring-direction-everywhere";
         SpringDampingNoCoefficient "spring-damping-no-coefficient";
         SpringDampingAllDirections "spring-damping-all-directions";
         SpringDampingOneVelocity "spring-damping-one-velocity";
         SpringDampingFirstVelocity "spring-damping-first-velocity";
+        SpringDampingSpeed "spring-damping-speed";
         SpringDampingVelocitySum "spring-damping-velocity-sum";
         GravitationNoMasses "gravitation-no-masses";
         GravitationOwnMass "gravitation-own-mass";
         GravitationOtherMass "gravitation-other-mass";
+        GravitationMassSum "gravitation-mass-sum";
+        GravitationMassIndex "gravitation-mass-index";
         GravitationNoConstant "gravitation-no-constant";
     }
     Wrong Jacobians {

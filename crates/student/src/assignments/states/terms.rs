@@ -17,7 +17,7 @@ pub struct TermRow {
     /// The part of a student's work that computes the quantity.
     pub part: Part,
     /// The powers of the mass, the step size and the distance in the formula.
-    pub(super) mass: i8,
+    pub(crate) mass: i8,
     pub(super) step: i8,
     pub(super) length: i8,
     /// Whether a function of the student computes only this quantity.
@@ -53,7 +53,7 @@ const VELOCITIES: &[&[Slip]] = &[
     VECTOR,
     EACH,
     &[Slip::XForBoth, Slip::YForBoth, Slip::Step(-1), Slip::Step(1), Slip::Mass(1), Slip::Mass(2), Slip::Mass(-1)],
-    &[Slip::MassOfFirst, Slip::Assigned],
+    &[Slip::MassOfFirst, Slip::MassIndex, Slip::Assigned],
 ];
 const STEP: &[&[Slip]] =
     &[&[Slip::Missing, Slip::FixedForgotten, Slip::FixedStand, Slip::FixedStopped, Slip::FixedHalted]];
@@ -72,7 +72,7 @@ const PENALTY: &[&[Slip]] = &[
 ];
 const WHOLE_PENALTY: &[&[Slip]] =
     &[&[Slip::Sign, Slip::Doubled, Slip::Halved, Slip::NoFactor, Slip::ThicknessInTest, Slip::SameSign], PENALTY[4]];
-const ALPHA: &[Slip] = &[Slip::Unclamped, Slip::Mirrored, Slip::Middle, Slip::Negated];
+const ALPHA: &[Slip] = &[Slip::Unclamped, Slip::Mirrored, Slip::Middle, Slip::Negated, Slip::Truncated, Slip::Rounded];
 const NORMAL: &[Slip] = &[Slip::Sign, Slip::Unit, Slip::Doubled, Slip::Halved];
 const APPROACH: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::NotStrict];
 const RESPONSE: &[Slip] = &[
@@ -101,7 +101,8 @@ const BODIES: &[Slip] = &[
 
 terms! {
     Part::Force(ForceKind::SimpleGravity) => {
-        Gravity "gravity" "Simple gravity": "m_i g" [1 0 0] true &[SUM, FORCE, VECTOR, EACH, &[Slip::MassOfFirst]];
+        Gravity "gravity" "Simple gravity": "m_i g" [1 0 0] true &[SUM, FORCE, VECTOR, EACH,
+            &[Slip::MassOfFirst, Slip::WholeMass, Slip::MassIndex]];
     }
     Part::Force(ForceKind::Drag) => {
         Drag "drag" "Drag": "-b v_i" [0 0 0] true &[SUM, FORCE, VECTOR, EACH, &[Slip::XForBoth, Slip::YForBoth]];

@@ -228,6 +228,8 @@ rows! {
     }
     Wrong Decision "sentences/decision.txt" {
         DecisionOpenEnd "decision-open-end";
+        DecisionOpenEndParticles "pp-open-end";
+        DecisionOpenEndHalfPlanes "ph-open-end";
         DecisionOpenStart "decision-open-start";
         DecisionOpenInterval "decision-open-interval";
         DecisionNoUpperBound "decision-no-upper-bound";
@@ -341,6 +343,7 @@ rows! {
         GeometricEmpty "geometric-empty";
         GeometricOneRound "geometric-one-round";
         GeometricFindsInVain "geometric-finds-in-vain";
+        GeometricCapped "geometric-capped";
         GeometricTwoRounds "geometric-two-rounds";
         GeometricRestarts "geometric-restarts";
         GeometricDetectsPrediction "geometric-detects-prediction";
@@ -360,6 +363,7 @@ rows! {
         ZonesOtherEndpoint "zones-other-endpoint";
         ZonesNextParticle "zones-next-particle";
         ZonesFlagOfEdges "zones-flag-of-edges";
+        ZonesHalfPlaneIndex "zones-half-plane-index";
         ZonesEdgeIndex "zones-edge-index";
         ZonesEdgeWithoutParticle "zones-edge-without-particle";
         ZonesNotMerged "zones-not-merged";
@@ -401,6 +405,7 @@ rows! {
         FailsafeInertiaAboutOrigin "failsafe-inertia-about-origin";
         FailsafeInertiaAtEnd "failsafe-inertia-at-end";
         FailsafeNoInertia "failsafe-no-inertia";
+        FailsafeRotationAbsolute "failsafe-rotation-absolute";
         FailsafeRotationSign "failsafe-rotation-sign";
         FailsafeNoRotation "failsafe-no-rotation";
         FailsafeSmallAngle "failsafe-small-angle";
@@ -418,6 +423,7 @@ rows! {
         FailsafeTurnsEnd "failsafe-turns-end";
         FailsafeMassIndex "failsafe-mass-index";
         FailsafeMassCounter "failsafe-mass-counter";
+        FailsafeFixedSkipped "failsafe-fixed-skipped";
         FailsafeFixedForgotten "failsafe-fixed-forgotten";
         FailsafeHalfPlaneForgotten "failsafe-half-plane-forgotten";
         FailsafeAllFixedOnly "failsafe-all-fixed-only";
@@ -430,6 +436,7 @@ rows! {
         FailsafeStopKeepsVelocity "failsafe-stop-keeps-velocity";
         FailsafeVelocityKept "failsafe-velocity-kept";
         FailsafeVelocityAdded "failsafe-velocity-added";
+        FailsafeVelocityTimesStep "failsafe-velocity-times-step";
         FailsafeVelocityNoStep "failsafe-velocity-no-step";
         FailsafeVelocityFromPrediction "failsafe-velocity-from-prediction";
         FailsafeVelocityOfCenter "failsafe-velocity-of-center";
