@@ -165,10 +165,7 @@ fn is_consistent(group: &GroupGrade) -> bool {
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
-/// The maximum number of accepted scenes that are used to refute a likely mistake.
-const MAX_WITNESSES: usize = 12;
-
-/// Returns the likely mistakes that accepted scenes refute. Only the smallest accepted scenes are tried.
+/// Returns the likely mistakes that accepted scenes refute. The smallest accepted scenes are tried first.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()
@@ -183,7 +180,6 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .map(|(_, task)| &task.scene)
         .collect();
     right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);
-    right.truncate(MAX_WITNESSES);
     // A built-in scene belongs to the milestone that its folder names. For other scenes, the milestone follows from
     // their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();

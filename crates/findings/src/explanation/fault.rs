@@ -180,6 +180,9 @@ fosssim_num::closed_set! {
         Both = "the polynomials are right, but the decisions are not: some contacts are missed, and others are \
             superfluous",
             "some collisions are missed, and others are found that do not exist";
+        /// Some pairs are not tested at all.
+        Skipped = "some pairs are not tested: their polynomials are not passed to the root finder",
+            "some pairs are not tested";
     }
     /// Returns the sentence for bodies that overlap at the end of a step.
     of_overlaps
@@ -441,6 +444,7 @@ impl StageFault {
             Self::Decisions { wrong: WrongDecisions::Missed, .. } => "stage-contacts-missed",
             Self::Decisions { wrong: WrongDecisions::Superfluous, .. } => "stage-contacts-superfluous",
             Self::Decisions { wrong: WrongDecisions::Both, .. } => "stage-decisions",
+            Self::Decisions { wrong: WrongDecisions::Skipped, .. } => "stage-pairs-skipped",
             Self::Overlaps { .. } => "stage-overlaps",
             Self::Change(_) => "stage-change",
             Self::ContactTimes => "stage-contact-times",

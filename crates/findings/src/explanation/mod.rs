@@ -160,6 +160,11 @@ impl Explanation {
         matches!(self.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Missing, .. })
     }
 
+    /// Returns whether the explanation is that the pairs are in another order, or that some are left out.
+    pub fn is_about_pairs(&self) -> bool {
+        [Self::ORDER, "stage-pairs-skipped"].contains(&self.key.as_str())
+    }
+
     /// Returns a key for the explanation's sentence. Explanations have the same key if and only if they have the same
     /// sentence.
     pub fn statement(&self) -> String {

@@ -7,6 +7,7 @@
 use super::{
     Detail, Explanation, Guess, PolynomialDetail, Weight,
     explain::is_formula_area,
+    fault::{ChangeRatio, ChangedParticles, StageFault, WrongVectors},
     naming::{alternative_statements, explain_by_row},
     polynomial::claim_of_form,
     topic::{ExplanationTopic, PolynomialEvidence},
@@ -237,6 +238,35 @@ fn merge_explanations(reported: &Explanation, open: &[OpenTrace]) -> Explanation
         reported.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));
     }
     reported
+}
+
+/// Removes what other traces contradict from a fault of contact vectors or states. Details of one trace are dropped
+/// then.
+pub(super) fn generalize_fault(reported: &mut Explanation, traces: &[&[Explanation]]) {
+    let Explanation { topic: ExplanationTopic::Stage(fault), details, .. } = reported else { return };
+    let before = fault.clone();
+    for one in traces.iter().copied().flatten() {
+        let ExplanationTopic::Stage(other) = &one.topic else { continue };
+        match (&mut *fault, other) {
+            (StageFault::ContactVectors { kind, wrong }, StageFault::ContactVectors { kind: of, wrong: other })
+                if kind == of && wrong != other =>
+            {
+                *wrong = WrongVectors::Direction;
+            }
+            (StageFault::Change(own), StageFault::Change(other))
+                if (own.cause, own.quantity) == (other.cause, other.quantity) =>
+            {
+                own.axis = own.axis.filter(|_| own.axis == other.axis);
+                own.particles = if own.particles == other.particles { own.particles } else { ChangedParticles::Any };
+                let is_same = own.ratio == other.ratio && (own.ratio != ChangeRatio::Factor || one.details == *details);
+                own.ratio = if is_same { own.ratio } else { ChangeRatio::Other };
+            }
+            _ => {}
+        }
+    }
+    if *fault != before {
+        details.clear();
+    }
 }
 
 const fn is_alternative(detail: &Detail) -> bool {

@@ -99,8 +99,8 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
         stages::explain(&mut reference, scene, scan.wrong_steps.iter().chain(&scan.right_steps).filter(is_of_numbers))
     });
-    if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
-        // If pairs are in a different order, their polynomials cannot be compared.
+    if stage.as_ref().is_some_and(Explanation::is_about_pairs) {
+        // If pairs are in a different order, or left out, their polynomials cannot be compared.
         polynomials.clear();
     }
     let mut all = known;

@@ -2,7 +2,7 @@
 //! unexplained rest ([`evidence`](super::evidence)).
 use super::{
     Detail, Explanation, Guess, ListGuess,
-    evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest},
+    evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest, generalize_fault},
     explain::is_formula_area,
     fault::StepStage,
     known::is_empty_stage,
@@ -85,6 +85,7 @@ pub fn explain_together<'a>(
         found.retain(|explanation| !explanation.names_stage());
         found.insert(0, head);
     }
+    found.iter_mut().for_each(|explanation| generalize_fault(explanation, &traces));
     near_pairs::merge_explanations(&mut found, &traces);
     let end = explain_non_finite_value(&traces).filter(|explanation| !refuted.contains(&explanation.key));
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
@@ -306,9 +307,9 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
     let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
-    // If pairs are in another order, the polynomials of one pair are in the place of another pair's.
+    // If pairs are in another order or left out, the polynomials of one pair are in the place of another pair's.
     let is_misread = |explanation: &Explanation| find(&explanation.key).is_none() && explanation.stage().is_none();
-    let has_order = all().any(|explanation| explanation.key == Explanation::ORDER);
+    let has_order = all().any(Explanation::is_about_pairs);
     for trace in open.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
             symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));

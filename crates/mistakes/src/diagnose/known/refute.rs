@@ -1,6 +1,6 @@
 //! Decides whether a mistake would show on a scene. A program that is right on such a scene does not make the mistake.
 use super::{
-    applicable_rows::may_change_trace,
+    applicable_rows::{is_state_mistake, may_change_trace},
     resimulate::{resimulate, step_work},
 };
 use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, find_first_difference, polynomial_matches};
@@ -15,8 +15,8 @@ use std::cell::Cell;
 const MAX_WORK: u64 = 200_000;
 
 /// Returns whether the mistake changes a logged value on this scene by more than round-off. Returns `false` if the
-/// search would take too long, or if the course's library does that part of the work: in `simple` and `continuous-time`
-/// the library responds, so a program's own impulses show only in `hybrid`.
+/// search would take too long, or if the course's library does that part of the work: in t2m2 the library responds, so
+/// a program's own impulses show only in `hybrid`.
 pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))
 }
@@ -25,6 +25,7 @@ pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
 pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else { return false };
     if row.area == Area::Response
+        && !is_state_mistake(row)
         && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })
     {
         return false;

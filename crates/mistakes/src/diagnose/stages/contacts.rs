@@ -7,9 +7,9 @@ use super::{
 };
 use crate::diagnose::{
     StageDetail, StageFault, WrongDecisions, WrongVectors,
-    sampling::{ROUND_OFF, impulse_matches, polynomial_matches},
+    sampling::{ROUND_OFF, impulse_matches, pair_particles, polynomial_matches},
 };
-use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
+use fosssim_model::{scene::Scene, sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
 /// Returns the explanation that the pairs of the first pass are in a different order. All polynomials of the pass must
@@ -19,6 +19,34 @@ pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len())
         .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted))
+}
+
+/// Returns the explanation that some pairs are not tested. It needs a step whose log consists of the expected
+/// polynomials without those of some pairs.
+pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> {
+    let skipped: Vec<Vec<(PairKind, f64)>> =
+        facts.iter().filter(|facts| facts.is_wrong).filter_map(find_skipped_pairs).collect();
+    let fault = StageFault::Decisions { kind: common_kind(&skipped.concat()), wrong: WrongDecisions::Skipped };
+    (!skipped.is_empty()).then(|| new_observation(fault, Vec::new(), skipped.len()))
+}
+
+/// Returns the kinds of the pairs of the first pass that the log lacks, if it consists of the other pairs' polynomials.
+fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
+    let size = facts.count_certain_polynomials();
+    let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
+    let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
+    let (mut at, mut skipped) = (0, Vec::new());
+    for ((pair, first), end) in facts.detections.iter().zip(ends).take_while(|(_, end)| *end <= size) {
+        let is_logged = at + end - first <= theirs.len()
+            && (*first..end)
+                .all(|index| polynomial_matches(ours.get(index), theirs.get(at + index - first), &ROUND_OFF));
+        if is_logged {
+            at += end - first;
+        } else {
+            skipped.push((pair.kind, 0.0));
+        }
+    }
+    (at > 0 && at == theirs.len() && !skipped.is_empty()).then_some(skipped)
 }
 
 /// Returns whether nearly all pairs of the first pass are complete but some are out of order. Pairs that an earlier
@@ -88,18 +116,33 @@ pub(super) fn explain_detection(facts: &[StepFacts]) -> Option<Explanation> {
 
 /// Returns the fault in the contacts at the end of steps, each compared with the reference's. The first difference of a
 /// step counts, because later ones in the pass may follow from it.
-pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
+pub(super) fn explain_overlaps(
+    scene: &Scene,
+    steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)],
+) -> Option<Explanation> {
+    let particles = |one: &LoggedImpulse| one.pair().map_or_else(Vec::new, |pair| pair_particles(scene, pair));
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
         let first = (0..ours.len().max(theirs.len())).find(|&index| {
             ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !impulse_matches(one, other, &ROUND_OFF))
         });
         let Some(first) = first else { continue };
+        // An earlier response of the pass changes velocities, and with them whether its bodies approach others.
+        let moved: Vec<usize> = ours[..first].iter().flat_map(particles).collect();
+        let differing = ours.get(first).into_iter().chain(theirs.get(first)).flat_map(particles);
+        if differing.into_iter().any(|particle| moved.contains(&particle)) {
+            continue;
+        }
+        // A pass tests all pairs of a particle before those of the next one.
+        let order = |impulse: &LoggedImpulse| impulse.pair().map(|pair| (pair.first, pair.kind, pair.second));
         let has =
             |list: &[LoggedImpulse], impulse: &LoggedImpulse| list.iter().any(|other| other.pair() == impulse.pair());
         match (ours.get(first), theirs.get(first)) {
             (Some(one), Some(other)) if one.pair() == other.pair() => {
                 contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));
+            }
+            (Some(one), Some(other)) if !has(ours, other) && order(other) < order(one) => {
+                contacts.superfluous_contacts.push((other.pair()?.kind, 0.0));
             }
             (Some(one), _) if !has(theirs, one) => contacts.missed_contacts.push((one.pair()?.kind, 0.0)),
             (_, Some(other)) => contacts.superfluous_contacts.push((other.pair()?.kind, 0.0)),
@@ -195,7 +238,7 @@ impl ContactStage {
             StageDetail::Impacts { right, count: contacts.len(), low, high }
         };
         let details = match wrong {
-            WrongDecisions::Both => Vec::new(),
+            WrongDecisions::Both | WrongDecisions::Skipped => Vec::new(),
             _ if rivals.is_empty() => vec![impacts(false, &listed)],
             _ => vec![impacts(false, &listed), impacts(true, &rivals)],
         };

@@ -232,7 +232,7 @@ impl StepFacts {
 
     /// Returns the number of polynomials that depend only on the state before the step: those of the first pass, in
     /// `continuous-time` up to the first contact.
-    fn count_certain_polynomials(&self) -> usize {
+    pub(super) fn count_certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());
         let behind = contact.and_then(|hit| self.detections.get(hit.detection_index + 1));
         behind.map_or(self.pass_size(), |(_, first)| *first)

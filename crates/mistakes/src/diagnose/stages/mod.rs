@@ -54,8 +54,8 @@ pub(super) fn explain<'a>(
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;
     }
-    if let Some(order) = contacts::explain_order(&facts) {
-        return Some(order);
+    if let Some(pairs) = contacts::explain_order(&facts).or_else(|| contacts::explain_skipped_pairs(&facts)) {
+        return Some(pairs);
     }
     if facts.iter().any(|facts| facts.has_wrong_formula()) {
         return None;

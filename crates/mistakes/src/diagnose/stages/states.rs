@@ -33,7 +33,7 @@ pub(super) fn explain<'a>(
         contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
         entries.extend(find_wrong_entries(scene, kept, &capture));
     }
-    explain_overlaps(&contacts).or_else(|| explain_changes(scene, &entries, count))
+    explain_overlaps(scene, &contacts).or_else(|| explain_changes(scene, &entries, count))
 }
 
 /// Returns the wrong velocities, and the positions that do not follow from the actual velocities.

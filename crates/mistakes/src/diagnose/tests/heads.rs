@@ -366,3 +366,15 @@ fn a_scene_alone_does_not_name_what_all_scenes_contradict() {
     let other = [first, of_edges.clone()];
     assert_eq!(correct_trace(&other, &likely, &[]).explanations[1], of_edges, "the other polynomial keeps its guess");
 }
+
+/// If traces disagree about how a vector is wrong, the common explanation only says that its direction is wrong.
+#[test]
+fn faults_of_a_vector_that_differ_are_generalized() {
+    let fault = |wrong| vec![stage(StageFault::ContactVectors { kind: None, wrong })];
+    let [reversed, short] = [fault(WrongVectors::Reversed), fault(WrongVectors::Length)];
+    let told = explain_together([&reversed[..], &reversed, &short], &[]);
+    let expected = StageFault::ContactVectors { kind: None, wrong: WrongVectors::Direction };
+    assert_eq!(told[0].topic, ExplanationTopic::Stage(expected));
+    let told = explain_together([&reversed[..], &reversed], &[]);
+    assert_eq!(told[0].topic, reversed[0].topic);
+}

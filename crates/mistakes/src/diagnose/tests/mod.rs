@@ -1,6 +1,10 @@
 //! Explains programs with several mistakes on the probe scenes.
 use super::naming::has_same_meaning;
-use super::{Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, probe_scenes};
+use super::sampling::{Source, TraceSamples, sample_trace};
+use super::{
+    Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, mistake_is_visible, probe_scenes,
+    stages,
+};
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::assignments::Assignment;
 use fosssim_student::{self as student, Row, Student};
@@ -111,4 +115,18 @@ fn a_trace_that_was_kept_in_part_is_explained() {
     assert_eq!(explained(trace.len()), [row.id]);
     assert_eq!(explained(trace.len() * 3 / 4), [row.id]);
     assert!(explained(0).is_empty());
+}
+
+/// The polynomials of a log without some pairs are those of other pairs, not wrong ones.
+#[test]
+fn pairs_that_are_not_tested_are_reported() {
+    let row = student::find("pairs-fixed-skipped").expect("it is known");
+    let scenes = probe_scenes(Assignment::T2M2);
+    let found = scenes.iter().filter(|(_, scene)| mistake_is_visible(scene, row.id)).any(|(_, scene)| {
+        let trace = student::record_trace(scene, Student::new(Some(row.mistake))).expect("a trace");
+        let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::from_trace(&trace));
+        let fault = stages::explain(&mut reference, scene, scan.wrong_steps.iter());
+        fault.is_some_and(|fault| fault.key == "stage-pairs-skipped")
+    });
+    assert!(found, "a scene shows that pairs are not tested");
 }

@@ -1,7 +1,7 @@
 //! If no known mistake explains wrong states, the first wrong quantity is reported.
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, ExplanationTopic, Quantity, StageDetail,
-    StageFault, WrongChange, WrongDecisions, explain, explain_together,
+    StageFault, WrongChange, WrongDecisions, explain, explain_together, mistake_is_visible, refuted_keys,
 };
 use fosssim_model::{
     scene::{Scene, original},
@@ -75,4 +75,49 @@ fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
     assert!(seen.len() == 1 && seen[0].names_stage(), "{seen:#?}");
     let heads = explain_together([named.as_slice(), &seen, &seen], &[]);
     assert!(heads.len() == 1 && heads[0].key == row.id, "{heads:#?}");
+}
+
+/// A response changes velocities, and with them whether later pairs of the pass approach each other.
+#[test]
+fn a_contact_after_a_wrong_response_is_no_wrong_detection() {
+    let row = r#"<scene><duration time="0.01"/><integrator type="symplectic-euler" dt="0.01"/>
+        <collision type="simple" COR="0.5"/>
+        <particle m="1" px="-0.5" py="0" vx="1" vy="0" fixed="0" radius="0.3"/>
+        <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.3"/>
+        <particle m="1" px="0.55" py="0" vx="0.8" vy="0" fixed="0" radius="0.3"/></scene>"#;
+    let told = explain(&scene(row), &right(&scene(&row.replace("0.5\"/>", "0.7\"/>"))));
+    let is_change = |one: &Explanation| matches!(one.topic, ExplanationTopic::Stage(StageFault::Change(_)));
+    assert!(told.len() == 1 && is_change(&told[0]), "{told:#?}");
+}
+
+/// In t2m1 students write responses, so a right scene with a collision contradicts an empty one.
+#[test]
+fn a_right_collision_contradicts_an_empty_response() {
+    assert!(mistake_is_visible(&scene(BALLS), "respond-particles-missing"));
+}
+
+/// All pairs of mistakes are tried on each trace, so an unexplained trace contradicts both of two rivals.
+#[test]
+fn two_rivals_do_not_protect_each_other() {
+    let pull = FALL.replace("<simplegravity", r#"<gravitationalforce i="0" j="1" G="0.5"/><simplegravity"#);
+    let scene = scene(&pull);
+    let trace = |id| {
+        let row = find(id).expect("a row");
+        explain(&scene, &student::record_trace(&scene, Student::new(Some(row.mistake))).expect("a trace"))
+    };
+    let open = explain(&scene, &right(&self::scene(&pull.replace("G=\"0.5\"", "G=\"0.9\""))));
+    let rivals = ["gravitation-own-mass", "gravitation-other-mass"].map(trace);
+    let wrong = [&rivals[0][..], &rivals[1], &open].map(|list| (&scene, list));
+    let refuted = refuted_keys(None, &wrong, &[]);
+    assert!(refuted.iter().any(|key| key == "gravitation-own-mass"), "{refuted:?}");
+}
+
+/// The velocity of each particle changes by its force divided by the mass of the first one.
+#[test]
+fn the_mass_of_the_first_particle_divides_all_forces() {
+    let row = find("explicit-velocities-mass-of-first").expect("a row");
+    let trace = student::record_trace(&scene(FALL), Student::new(Some(row.mistake))).expect("a trace");
+    let number = |index: usize| f64::from_le_bytes(trace[8 * index..8 * index + 8].try_into().expect("eight bytes"));
+    // The second record begins at number 8, and its last velocity is that of the heavier particle.
+    assert!((number(15) - (1.0 - 0.1 * 0.8 * 3.0 / 2.0)).abs() < 1e-12, "{}", number(15));
 }
