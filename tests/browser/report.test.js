@@ -237,7 +237,7 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
   await after.uncheck();
   assert.match(
     await page.locator(".say").innerText(),
-    /Only the tables differ: the positions match the expected ones bit for bit/,
+    /Only polynomials or contacts differ: the positions match the expected ones bit for bit/,
   );
   assert.deepEqual(complaints, []);
   await close();

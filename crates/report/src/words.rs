@@ -59,16 +59,21 @@ pub(crate) fn describe_ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
+/// Explains the exit code of [`is_file_missing`].
+pub(crate) const MISSING_FILE: &str =
+    "exit code 127 usually means that a file was not found: the program runs alone, without the files next to it";
+
+/// Returns whether the program ended as shells and loaders do if they do not find a file.
+pub(crate) fn is_file_missing(result: &SceneResult) -> bool {
+    result.ended == Some(RunEnd::Exited(NOT_FOUND_CODE))
+}
+
 /// Returns further lines about a scene: the first difference, the counts of findings, any damage, and the file of the
 /// trace.
 pub fn list_details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
-    if result.ended == Some(RunEnd::Exited(NOT_FOUND_CODE)) {
-        lines.push(
-            "exit code 127 usually means that a file was not found: the program runs alone, without the files next \
-             to it"
-                .to_owned(),
-        );
+    if is_file_missing(result) {
+        lines.push(MISSING_FILE.to_owned());
     }
     if let Some(disclosure) = &result.disclosure {
         lines.extend(disclosure.official().first_divergence.as_ref().map(describe_first_difference));

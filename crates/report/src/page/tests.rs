@@ -368,6 +368,26 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
 
 /// A named mistake comes before unexplained scenes. Of its scenes, the one with the fewest findings comes first.
 #[test]
+fn a_program_whose_files_are_missing_is_not_sent_to_a_debugger() {
+    for (code, advises_debugger) in [(127, false), (1, true)] {
+        let reason = crate::grade::samples::reason_with_text("it ended");
+        let scene = |name: &str| SceneResult {
+            scene: name.to_owned(),
+            ended: Some(RunEnd::Exited(code)),
+            ..SceneResult::without_run("", 10, Verdict::RuntimeError, reason.clone())
+        };
+        let grade = Grade {
+            groups: vec![with_results(marking(Hints::Full), vec![scene("A/one"), scene("A/two")])],
+            verdict: Verdict::RuntimeError,
+            ..crate::grade::samples::accepted_grade()
+        };
+        let html = GradePage { grade: &grade, card: &|_| None, class: None, reader: Audience::Staff }.html();
+        assert_eq!(html.contains("fsanitize"), advises_debugger, "{code}");
+        assert_eq!(html.contains("file was not found: the program runs alone"), !advises_debugger, "{code}");
+    }
+}
+
+#[test]
 fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let named = |scene: &str, id: &str| {
         let (card, result) = drawn(&asset(scene), id, Hints::Full);

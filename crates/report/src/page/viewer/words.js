@@ -18,11 +18,13 @@ class Words extends Drawing {
       const none = this.isExact()
         ? !isWrong
           ? "Every position matches the expected one bit for bit."
-          : "Only the tables differ: the positions match the expected ones bit for bit."
+          : "Only polynomials or contacts differ: the positions match the expected ones bit for bit."
         : "No position differs by more than the rounding of this page.";
       const furthest = `furthest particle is ${formatShort(difference.most)} ${what}.`;
       const some =
-        isWrong && difference.most < ROUND_OFF ? `Only the tables differ: the ${furthest}` : `The ${furthest}`;
+        isWrong && difference.most < ROUND_OFF
+          ? `Only polynomials or contacts differ: the ${furthest}`
+          : `The ${furthest}`;
       parts.push(difference.most > 0 ? some : none);
     }
     if (data.whatIf && this.step >= data.first) {
@@ -441,7 +443,9 @@ class Words extends Drawing {
         ? el(
             "p",
             { class: "hint" },
-            `${sameCount} ${differingRows.length ? "more " : ""}numbers of it are the same bit for bit.`,
+            selected.pair && !differingRows.length
+              ? "Its bodies move as expected, bit for bit. The command below shows its polynomials."
+              : `${sameCount} ${differingRows.length ? "more " : ""}numbers of it are the same bit for bit.`,
           )
         : "",
       bits,
