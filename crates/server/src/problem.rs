@@ -97,6 +97,10 @@ problems! {
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
+    /// Somebody else has changed the same thing since the sender saw it.
+    changed(detail: impl Into<String>): 409, "conflict", "Not possible now",
+        detail,
+        "go back: what you typed is kept; check it, and save again";
     /// Administrators cannot close, remove or demote their own account.
     own_account(): 409, "conflict", "Not possible now",
         "this is your own account",

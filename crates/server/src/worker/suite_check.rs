@@ -44,8 +44,8 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
                 .map(str::trim)
                 .filter(|line| !line.is_empty())
                 .collect::<Vec<_>>()
-                .join("; ")
-                .replace(":;", ":"),
+                .join(";\n")
+                .replace(":;\n", ":\n"),
         )),
         (End::Code(_), _) => Ok(()),
         (End::Signal(_), _) => {

@@ -98,10 +98,7 @@ impl Staff {
         let values = values![self.course, seen, kind, assignment.unwrap_or(0), beginning];
         let Some(row) = transaction.row(statement, values).await? else { return Ok(()) };
         let (who, what) = (row.maybe_text("login")?.unwrap_or_default(), row.text("text")?);
-        Err(Problem::conflict(
-            format!("{who} has changed it in the meantime: {what}"),
-            "load the page again, and change it there",
-        ))
+        Err(Problem::changed(format!("{who} has changed it in the meantime: {what}")))
     }
 
     pub(in crate::domain) async fn add_member(

@@ -67,8 +67,7 @@ async fn check_revision(
     let last = transaction.row(statement, values![assignment.id]).await?;
     let last = last.map(|row| Ok::<_, DbError>((row.maybe_text("login")?.unwrap_or_default(), row.text("text")?)));
     let (who, what) = last.transpose()?.unwrap_or_default();
-    let text = format!("{who} has changed it in the meantime: {what}");
-    Err(Problem::conflict(text, "load the page again, and change it there"))
+    Err(Problem::changed(format!("{who} has changed it in the meantime: {what}")))
 }
 
 impl Deref for Staff {

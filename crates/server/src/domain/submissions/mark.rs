@@ -102,8 +102,7 @@ impl Staff {
         let marked_at = submission.mark.as_ref().and_then(|mark| mark.marked_at);
         if let Some(mark) = submission.mark.as_ref().filter(|_| seen_mark.is_some_and(|seen| seen != marked_at)) {
             let who = mark.by.as_deref().unwrap_or("somebody");
-            let detail = format!("{who} has marked it in the meantime: {}", mark.comment);
-            return Err(Problem::conflict(detail, "load the page again, and mark it there"));
+            return Err(Problem::changed(format!("{who} has marked it in the meantime: {}", mark.comment)));
         }
         let ungraded = Problem::conflict("the submission is not graded yet", "wait for its grade");
         ensure(points.is_none() || submission.grade.is_some(), ungraded)?;
@@ -203,6 +202,8 @@ impl Staff {
         ensure(due_at.is_none_or(calendar::is_plausible), Problem::invalid(wrong))?;
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let is_later = due_at.zip(assignment.settings.due_at).is_none_or(|(extended, due)| extended > due);
+        ensure(is_later, Problem::invalid("an extension must end after the assignment's due date"))?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
         let beginning = format!("{login} ");
         self.check_last_event(&mut transaction, ("extension", Some(assignment.id)), &beginning, since).await?;

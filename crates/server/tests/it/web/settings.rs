@@ -138,6 +138,8 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     let seen = page.split_once("name=\"seen\" value=\"").expect("a field").1.split('"').next().expect("a number");
     let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";
     colleague.send("PUT", extension, JSON, br#"{"due_at": "2026-12-08T22:59Z"}"#).expect(204);
+    let early = colleague.send("PUT", extension, JSON, br#"{"due_at": "2026-11-08T22:59Z"}"#).expect(400).text();
+    assert!(early.contains("after the assignment's due date"), "{early}");
     let form = format!("due=2026-12-03T12:00&due_zone=0&seen={seen}");
     let refused = admin.post_form("/c/physics/a/m1/students/ada/extension", &form).expect(409).text();
     let words = "colleague has changed it in the meantime: ada got an extension until 2026-12-08 22:59";

@@ -112,19 +112,27 @@ if (form) {
 for (const time of document.querySelectorAll("time[datetime]")) {
   time.textContent = new Date(time.dateTime).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 }
-// Convert fields, too: they arrive in UTC, and are sent with their time zone. This is the assignment's time zone, if it
-// is set, and otherwise the reader's.
+// Convert fields, too: they arrive in UTC, and are sent with their time zone. This is the assignment's time zone, or
+// the one in the same form, if it is set, and otherwise the reader's.
 for (const field of document.querySelectorAll("input[type=datetime-local]")) {
   const zone = document.getElementById(`${field.id}-zone`);
   const name = document.getElementById(`${field.id}-zone-name`);
-  const timeZone = field.dataset.zone ?? Intl.DateTimeFormat().resolvedOptions().timeZone;
+  const zoneField = field.form.elements.time_zone;
+  const findTimeZone = () =>
+    (zoneField ? zoneField.validity.valid && zoneField.value.trim() : field.dataset.zone) ||
+    Intl.DateTimeFormat().resolvedOptions().timeZone;
   // Swedish times have the form of ISO 8601. The offset is in minutes.
-  const offset = (date) => Math.round((new Date(`${date.toLocaleString("sv", { timeZone })}Z`) - date) / 60000);
+  const offset = (date) => {
+    const local = date.toLocaleString("sv", { timeZone: findTimeZone() });
+    return Math.round((new Date(`${local}Z`) - date) / 60000);
+  };
   if (field.defaultValue) {
     const date = new Date(`${field.defaultValue}Z`);
     field.value = new Date(date.getTime() + offset(date) * 60000).toISOString().slice(0, 16);
   }
-  name.textContent = timeZone;
+  const showTimeZone = () => (name.textContent = findTimeZone());
+  showTimeZone();
+  zoneField?.addEventListener("change", showTimeZone);
   field.form.addEventListener("submit", () => {
     const asUtc = new Date(`${field.value}Z`);
     zone.value = field.value ? offset(new Date(asUtc - offset(asUtc) * 60000)) : 0;
