@@ -1,5 +1,5 @@
-//! Links the programs statically where the machine has the C library's archives, because a grader is started once for
-//! every trace: half of what a small scene took was the loading of three shared libraries and 15,000 relocations.
+//! Links the programs statically where the machine has the C library's archives. A grader is started once for every
+//! trace. Half of a small scene's time was spent on loading three shared libraries with 15,000 relocations.
 //!
 //! Rust's own switch for it, `-C target-feature=+crt-static`, can't be set for a package, and set for everything it
 //! forbids procedural macros. So the linker is led: a folder that is searched before the system's holds scripts that

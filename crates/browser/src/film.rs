@@ -141,7 +141,7 @@ impl Film {
     pub(crate) fn draw_requested_picture(&mut self, request: &PictureRequest) -> PageAnswer {
         let size = Size::new(request.width, request.height).map_err(|error| error.to_string())?;
         let step = request.step.min(self.steps);
-        // The page itself shows the step and the time, so the picture does not.
+        // The page itself shows the step and the time, so the picture omits them.
         let label = !matches!(request.form, PictureForm::Pixels);
         let is_earlier =
             |(painter, next, has): &(Painter, u32, bool)| *next <= step && painter.size() == size && *has == label;

@@ -46,7 +46,7 @@ pub(crate) fn find_xml(name: &str) -> Result<&'static [u8], String> {
 }
 
 /// Returns the names of the scenes to which a dropped trace may belong, according to its first record. If the file
-/// cannot be a trace, also returns the kind of file that it probably is.
+/// cannot be a trace, also returns its probable kind.
 pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // If there is an error, its message is in `fault`.

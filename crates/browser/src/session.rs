@@ -23,8 +23,8 @@ enum PageRequest {
     Example,
     /// Reads the scene in the second part. Returns whether the strict reader accepts it.
     Read { name: String },
-    /// Finds the embedded scenes to which the dropped trace may belong. If it cannot be a trace, finds the kind of file
-    /// that it probably is.
+    /// Finds the embedded scenes to which the dropped trace may belong. If the file cannot be a trace, finds its
+    /// probable kind.
     Recognize {
         #[serde(default)]
         file: u32,

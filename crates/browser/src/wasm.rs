@@ -59,7 +59,7 @@ extern "C" fn answer_request() -> *const u8 {
     })
 }
 
-/// Returns the length of the answer.
+/// Returns the number of bytes of the answer.
 #[unsafe(no_mangle)]
 extern "C" fn length() -> usize {
     MESSAGE.with_borrow(Vec::len)

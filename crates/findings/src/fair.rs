@@ -92,7 +92,7 @@ impl Shares {
 pub struct Judgement {
     /// The verdict by the fair rules.
     pub verdict: FairVerdict,
-    /// The reason why the trace is rejected as a whole; `None` if it is not.
+    /// The reason why the whole trace is rejected, if there is one.
     pub refusal: Option<FairRefusal>,
     /// The findings by the fair rules.
     pub findings: BookFindings,

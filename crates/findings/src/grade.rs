@@ -52,7 +52,7 @@ impl CourseNote {
     }
 }
 
-/// Formats the note as one line, with the URL as it is.
+/// Formats the note as one line, with an unchanged URL.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(&self.format_line(str::to_owned, str::to_owned))

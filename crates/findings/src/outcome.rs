@@ -42,7 +42,7 @@ pub struct Outcome {
     pub steps: u32,
     /// The collision handling that the scene uses.
     pub collisions: CollisionType,
-    /// The reason why judging stopped early; `None` if it did not.
+    /// The reason why judging stopped early; `None` if it reached the end.
     pub stop: Option<Stop>,
     /// The first damage that the original's reader skips without a message.
     pub damage: Option<Damage>,

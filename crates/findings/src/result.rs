@@ -78,7 +78,7 @@ impl SceneResult {
 
     /// Removes everything that the program could have controlled, except for the verdict. A program could reveal a
     /// hidden scene by an exit code, a signal, the first wrong step, a picture, its time or its memory. Values that are
-    /// the same in every scene are kept, and so are the names of likely mistakes.
+    /// the same in every scene, and the names of likely mistakes, are kept.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,

@@ -102,7 +102,7 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
-    /// Returns the reason why judging by a rule book stopped early; `None` if it did not.
+    /// Returns the reason why judging by a rule book stopped early; `None` if it reached the end.
     pub fn stop_by(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
         self.stop.clone().or(self.parity.endless_step.filter(|_| is_parity).map(Stop::Step))

@@ -22,7 +22,7 @@ pub struct FeatureIndex {
 /// The features of a scene, which are its spectrum.
 pub type Features = BTreeSet<FeatureIndex>;
 
-/// A scene that was run, and how the program failed, if it did.
+/// A scene that was run, and the way in which the program failed, if it failed.
 #[derive(Debug, Clone, Copy)]
 pub struct TriedScene<'a> {
     /// The scene's name.

@@ -175,7 +175,7 @@ mod tests {
     use fosssim_sandbox::{FakeRun, RunEnd};
     use std::{os::unix::fs::PermissionsExt, path::PathBuf, process::Command};
 
-    /// Stages a submission as a suite without a build does.
+    /// Stages a submission for a suite without a build.
     fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<StagedProgram, String>) -> StagedProgram {
         let (backend, cancellation) =
             (Backend::fake(|_| FakeRun::with_end(RunEnd::Exited(0))), Cancellation::default());

@@ -18,7 +18,7 @@ pub struct SceneFile {
 }
 
 /// Returns the files with an ending such as `.xml` in the groups of a folder, sorted by the names of the scenes. Files
-/// elsewhere in the folder are left out, and so are files whose names are not UTF-8.
+/// elsewhere in the folder, and files whose names are not UTF-8, are left out.
 ///
 /// # Errors
 /// Fails if a folder can't be read.

@@ -48,7 +48,7 @@ pub struct StagedProgram {
     pub digest: blake3::Hash,
     /// The result of the build, if the program was built.
     pub build: Option<Build>,
-    /// The reason why the submission cannot be run; `None` if it can. The submission itself is at fault.
+    /// The reason why the submission cannot be run, if there is one. The submission itself is at fault.
     pub unusable_reason: Option<UnusableReason>,
     /// The identity of the file that was copied.
     pub(super) identity: Option<ProgramIdentity>,
@@ -76,9 +76,9 @@ impl From<String> for CopyError {
 }
 
 /// Decides who is at fault if a file of a submission cannot be opened or read. If the file is missing or not
-/// accessible, it is the submission.
+/// accessible, the submission is at fault.
 pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
-    // If a path is too long, the submission is at fault. If a disk fails, the machine is.
+    // If a path is too long, the submission is at fault. If a disk fails, the machine is at fault.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),

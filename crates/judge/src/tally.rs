@@ -103,7 +103,7 @@ pub(super) struct Tally<'a> {
     frame: &'a LenientFrame,
     /// The mid record, if the layout has one.
     mid: Option<&'a LenientFrame>,
-    /// Whether the reference's impulses are logged. In `hybrid` they are not.
+    /// Whether the reference's impulses are logged. `hybrid` logs none.
     logs_impulses: bool,
     buffers: &'a mut TallyBuffers,
     result: &'a mut StepResult,

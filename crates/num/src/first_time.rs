@@ -14,8 +14,8 @@ use super::{
 /// Polynomials must have been created by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
 ///
 /// All polynomials are solved, even if an earlier one is nowhere positive, because this decides whether the search
-/// ends. The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. An empty list gives
-/// `+inf`, and so does a list with an empty polynomial or one of the form `c z^m`, whatever the others are.
+/// ends. The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. It is `+inf` if the
+/// list is empty, or contains an empty polynomial or one of the form `c z^m`.
 ///
 /// # Errors
 /// Fails with [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.

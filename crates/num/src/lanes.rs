@@ -17,7 +17,7 @@ impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Out
 
 /// A number with a modulus.
 pub trait Modulus {
-    /// Returns the modulus.
+    /// Returns the absolute value.
     #[must_use]
     fn modulus(self) -> Self;
 }

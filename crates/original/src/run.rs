@@ -146,7 +146,7 @@ fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     })
 }
 
-/// Creates the file of the trace.
+/// Creates the file of the trace, unless it is the scene's own file.
 fn create(name: &Path, scene: Identity) -> Result<File, Vec<u8>> {
     if fs::metadata(name).is_ok_and(|metadata| Identity::from_metadata(&metadata) == scene) {
         let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());

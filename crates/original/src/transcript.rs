@@ -166,7 +166,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("{PINK}Progress: {RESET}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
     }
 
-    /// Ends a step, and prints the time that it took if the original does.
+    /// Ends a step, and prints its duration if the original prints one.
     pub(crate) fn end_step(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();

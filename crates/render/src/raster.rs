@@ -31,7 +31,7 @@ impl Raster {
         Self { size, pixels }
     }
 
-    /// Returns the size.
+    /// Returns the size of the picture.
     pub const fn size(&self) -> Size {
         self.size
     }

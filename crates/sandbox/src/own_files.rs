@@ -30,7 +30,7 @@ pub const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 const MARK_WINDOW: u64 = 1 << 20;
 /// The prefix of the Python module's name, and of the folder that `pip` creates next to the module.
 const MODULE_PREFIX: &str = "fosssim";
-/// The folders in which Python installations are.
+/// The folders that contain Python installations.
 const PYTHON_FOLDERS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
 /// The folders of modules within a Python installation.
 const MODULE_FOLDERS: [&str; 2] = ["dist-packages", "site-packages"];

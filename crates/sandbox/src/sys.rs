@@ -396,7 +396,7 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
     let length = u16::try_from(program.len()).map_err(io::Error::other)?;
     let program = FilterProgram { length, filter: program.as_ptr() };
     let flags = if listener { libc::SECCOMP_FILTER_FLAG_NEW_LISTENER } else { 0 };
-    // SAFETY: the structure has the layout of the kernel's `sock_fprog`. It outlives the call, and so does its array.
+    // SAFETY: the structure has the layout of the kernel's `sock_fprog`. The structure and its array outlive the call.
     let answer = unsafe { libc::syscall(libc::SYS_seccomp, libc::SECCOMP_SET_MODE_FILTER, flags, &raw const program) };
     let fd = check(answer)?;
     // SAFETY: with this flag, the result is a descriptor that the kernel has just opened for this process alone.

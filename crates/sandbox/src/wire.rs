@@ -115,8 +115,8 @@ impl RunOrder {
 /// A message from the supervisor to the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
-    /// The child process exists. The message contains its session, unless numbers in its process namespace are
-    /// different, and its own user, if it has one.
+    /// The child process exists. The message contains its session, unless its process namespace has other process IDs,
+    /// and its own user ID, if it has one.
     Ready { session: Option<i32>, user: Option<u32> },
     /// The sandbox could not be set up. This is an error of the grader or the host.
     Failed(Failure),
@@ -149,7 +149,7 @@ pub(super) fn failure_at(name: &'static str) -> impl FnOnce(io::Error) -> Failur
 /// The supervisor's report on a finished run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
-    /// The reason why the supervisor killed the program; `None` if it did not.
+    /// The reason why the supervisor killed the program; `None` if the program ended by itself.
     pub(super) cause: Option<RunEnd>,
     /// The raw wait status of the run's main process.
     pub(super) status: i32,
@@ -184,7 +184,7 @@ pub(super) struct Probe {
     pub(super) notify: Option<String>,
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
-    /// The reason why copies of programs cannot be executed; `None` if they can.
+    /// The reason why copies of programs cannot be executed, if there is one.
     pub(super) execution: Option<String>,
     /// Whether copies must be executed in memory, because nothing can be executed in the temporary folder.
     pub(super) from_memory: bool,

@@ -49,8 +49,8 @@ pub async fn record_report(
     Ok(())
 }
 
-/// Returns whether a worker may claim a job. It must have fewer jobs than its token has slots, and must not be failing
-/// while other workers succeed.
+/// Returns whether a worker may claim a job. It must have fewer jobs than its token has slots. If it fails while other
+/// workers succeed, it must pause first.
 ///
 /// # Errors
 ///

@@ -45,7 +45,7 @@ macro_rules! problems {
 }
 
 problems! {
-    /// The request is not signed in.
+    /// The sender of the request is not signed in.
     not_signed_in(): 401, "not-signed-in", "Not signed in",
         "this needs a sign-in",
         "sign in, or send a token: Bearer fso_...";

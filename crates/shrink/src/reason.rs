@@ -42,8 +42,8 @@ impl WrongReason {
         FailureKind::from_end(ended).map(|failure| Self::Ended(failure, signal))
     }
 
-    /// Returns the reason why a program is wrong on a scene, or `None` if it is right, or if only round-off decides
-    /// that.
+    /// Returns the reason why a program is wrong on a scene. Returns `None` if the program is right, or if only
+    /// round-off makes it wrong.
     pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
         let (fault, detail) = find_reason(scene, seen)?;
         let Some(detail) = detail else { return Some(fault) };
@@ -87,8 +87,8 @@ fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_only_re
     }
 }
 
-/// Returns the reason that needs no explanation, and the first finding of a trace that can be read, or `None` if
-/// nothing is wrong, or if round-off may decide that.
+/// Returns the reason that needs no explanation, and the first finding of a trace that can be read. Returns `None` if
+/// nothing is wrong, or if round-off may be the cause.
 fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
     if let Some(end) = WrongReason::from_end(&seen.ended) {
         return Some((end, None));
@@ -102,8 +102,8 @@ fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option
     }
     let fair = outcome.fair.filter(|fair| fair.verdict == FairVerdict::Rejected)?;
     let first = fair.findings.first_divergence?;
-    // Behind a plain fault, decisions about the program's own positions may be borderline where the reference's are
-    // not.
+    // After a plain fault, decisions about the program's own positions may be borderline, while the reference's
+    // decisions are certain.
     let has_margin = fair.borderline == 0 || (is_clear_finding(first.detail) && is_clear(scene));
     let finding = WrongReason::Finding(first.kind(), first.detail.pair().map(|pair| pair.kind));
     has_margin.then_some((finding, Some(first.detail)))

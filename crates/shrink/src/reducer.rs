@@ -24,8 +24,9 @@ pub struct SmallScene {
 /// that is requested. The result `None` ends the search.
 pub type RunProgram<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
-/// Begins with the first of these steps' scenes on which the program is wrong for the reason alone, or else for the
-/// reason together with others, and makes it smaller, or returns `None` if there is no such scene.
+/// Makes a scene smaller. Begins with the first of these steps' scenes on which the program is wrong for the reason
+/// alone. If there is none, begins with the first on which it is wrong for the reason together with others. Returns
+/// `None` if there is no such scene.
 pub fn reduce(
     beginnings: &[(u32, Scene)],
     assignment: Assignment,

@@ -85,10 +85,18 @@ pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
 /// The size of a scene: the first number that differs decides which of two is smaller.
 pub(crate) type Size = ([usize; 9], f64);
 
-/// Measures a scene: whether it depends on round-off; warnings, and parts that programs of the assignment do not
-/// support; steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that the
-/// reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far as
-/// they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
+/// Measures a scene. The most important part of the size is first:
+///
+/// 1. whether the result depends on round-off;
+/// 2. warnings, and parts that programs of the assignment do not support;
+/// 3. steps;
+/// 4. bodies;
+/// 5. edges and half-planes;
+/// 6. forces;
+/// 7. features that are not the plainest;
+/// 8. collisions that the reference detects;
+/// 9. digits of numbers that are not plain (a mass of 1 is plain), and of results that are too long to compute by hand;
+/// 10. magnitudes and signs, where 1 is before 7 and 7 before -7.
 pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
     let mut copy = scene.clone();

@@ -144,7 +144,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     Ok(exit::ACCEPTED)
 }
 
-/// Returns the manifest of the recordings.
+/// Returns the text of `manifest.txt`: a line for each recording with its name, steps, bytes and digest.
 fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::render_manifest(recordings.iter().map(|(_, recording)| recording))
 }

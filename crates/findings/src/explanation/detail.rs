@@ -24,7 +24,7 @@ pub enum Detail {
 /// The exact form of a fault in polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
-    /// Each detection logs another number of polynomials than it should.
+    /// Each detection logs a wrong number of polynomials.
     Logged {
         /// The number of polynomials that the detection logs.
         logged: usize,
@@ -219,7 +219,7 @@ pub enum StageDetail {
 /// The change of a quantity by a contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
-    /// The quantity should not change, but does.
+    /// The quantity changes, although it should stay the same.
     Unwanted,
     /// The change along the contact vector is right.
     Right,

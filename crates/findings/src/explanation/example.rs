@@ -26,7 +26,7 @@ pub struct Example {
 pub enum ExamplePlace {
     /// The numbers are the coefficients of a polynomial whose inputs are given.
     Given {
-        /// The pair whose polynomial it is.
+        /// The pair to which the polynomial belongs.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
@@ -35,7 +35,7 @@ pub enum ExamplePlace {
     },
     /// The numbers are the coefficients of a polynomial.
     Polynomial {
-        /// The pair whose polynomial it is.
+        /// The pair to which the polynomial belongs.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
@@ -61,7 +61,7 @@ pub enum ExamplePlace {
     Particle {
         /// The index of the particle.
         particle: usize,
-        /// The record of the step in which the particle is.
+        /// The record of the step that contains the particle.
         record: StepRecord,
     },
     /// The numbers are a particle's position and velocity in the mid record, given by its index. The reference does not

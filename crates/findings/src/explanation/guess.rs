@@ -8,7 +8,7 @@ use std::borrow::Cow;
 pub enum Guess {
     /// A guess that concerns the whole list of coefficients.
     List(ListGuess),
-    /// Other inputs or another formula are used. The value is the key of a change that the assignment's data describe.
+    /// A change of the inputs or of the formula that the assignment's data describe. The value is its key.
     Named(Cow<'static, str>),
     /// A guess that concerns one quantity in the formula.
     Quantity(QuantityGuess),

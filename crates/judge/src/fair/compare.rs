@@ -190,8 +190,8 @@ pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> 
 }
 
 /// Compares like [`compare`], but only with the best factor. The factor is found once, and one loop compares all
-/// coefficients by the same operations. Returns `None` unless the logged polynomial is complete and right, as nearly
-/// all are.
+/// coefficients by the same operations. Returns `None` unless the logged polynomial is complete and right, which is the
+/// usual case.
 fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;

@@ -48,7 +48,8 @@ fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
 /// A polynomial's value at a time, and the tolerance of that value.
 type EvaluateFn = fn(&[BoundedValue], f64) -> (f64, f64);
 
-/// Returns whether a pair may come into contact at time `t`: one polynomial becomes positive, and none is negative.
+/// Returns whether a pair may come into contact at time `t`. No polynomial may be negative then. Unless the step starts
+/// at `t`, one polynomial must become positive.
 fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;

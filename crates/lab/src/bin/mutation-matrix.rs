@@ -26,8 +26,8 @@ enum Answer {
     Same,
     /// The trace differs from the reference's and is accepted.
     Accepted,
-    /// The trace is rejected only because of decisions that depend on coefficients which the course's library dropped
-    /// as too small. The factor of the polynomials is the cause, and the program really behaves differently.
+    /// The trace is rejected only because the course's library dropped coefficients as too small. The scale of the
+    /// program's polynomials causes this.
     Lost,
     /// The trace is rejected.
     Rejected,

@@ -92,8 +92,8 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 }
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
-/// program does not make: they are in code that a student of this milestone does not write, or other wrong scenes or
-/// right ones contradict them. In right scenes the program is right, although it would be wrong with the mistake
+/// program does not make. They are in code that a student of this milestone does not write, or other scenes contradict
+/// them. In right scenes the program is right, although it would be wrong with the mistake
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.

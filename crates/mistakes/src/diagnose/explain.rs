@@ -28,7 +28,7 @@ const MAX_PAIRS: usize = 400_000;
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
 /// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
-/// content are accepted. Bytes after the first 64 MiB are ignored, and so is an incomplete record. For a trace of
+/// content are accepted. Bytes after the first 64 MiB, and an incomplete record, are ignored. For a trace of
 /// another scene, the only explanation asks whether the trace belongs to this one ([`Explanation::is_other_scene`]).
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))

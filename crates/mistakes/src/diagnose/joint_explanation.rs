@@ -25,7 +25,7 @@ const MANY_TRACES: usize = 8;
 /// contradict. The explanation of the first value that is not finite does not count toward this limit. It comes last,
 /// because such values follow from the other mistakes.
 ///
-/// A single scene often cannot distinguish mistakes; several together nearly always can.
+/// A single scene often cannot distinguish mistakes. Several scenes together nearly always distinguish them.
 pub fn explain_together<'a>(
     traces: impl IntoIterator<Item = &'a [Explanation]>,
     refuted: &[String],
@@ -337,10 +337,11 @@ fn is_confirmed(open: &[OpenTrace], statement: &str) -> bool {
     open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(statement)).count() > 1
 }
 
-/// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
-/// addition to a reported mistake, or, if there are several traces, two others. Traces with a wrong stage count only if
-/// nothing explains them. A single symptom may follow from an earlier mistake, as missing polynomials do. After a fault
-/// of a stage, whose mistake is unknown, and among many traces, a single trace may fit a known mistake by chance.
+/// Returns whether enough traces suggest another mistake. One of these is enough:
+///
+/// - A trace that is not explained yet suggests it.
+/// - A trace that is already explained needs it in addition to a reported mistake.
+/// - Two traces that are already explained suggest it, or one if there is no other trace.
 fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
     let statement = next.statement();
     let naming = |is_covered: bool| {
@@ -348,12 +349,15 @@ fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -
             .filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&statement))
             .count()
     };
+    // A wrong stage must be suggested by two traces that are not explained yet.
     if next.names_stage() {
         return naming(false) > 1 && !next.is_vague();
     }
     let is_partner = matches!(next.topic, ExplanationTopic::Mistake) && is_needed(next, open);
     let is_formula = find(&next.key).is_none_or(|row| is_formula_area(row.area));
+    // Among many traces, or if the mistake of a wrong stage is unknown, one trace may fit a known mistake by chance.
     let may_be_chance = !is_formula && (open.len() >= MANY_TRACES || found.iter().any(Explanation::names_stage));
+    // Missing polynomials may follow from an earlier mistake.
     !next.reports_missing_polynomials()
         && (naming(false) > usize::from(may_be_chance) || is_partner || naming(true) >= open.len().min(2))
 }

@@ -105,8 +105,8 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
 }
 
-/// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Together they nearly
-/// always distinguish mistakes that one scene cannot.
+/// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Several scenes nearly
+/// always distinguish mistakes that look the same in one scene.
 pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
     if explained > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }

@@ -25,7 +25,7 @@ const MAX_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 const MAX_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
-    /// Empties the list, and removes earlier ones.
+    /// Removes all lists, and begins an empty one.
     pub fn clear(&mut self) {
         self.used_bytes = 0;
         self.begin_list();

@@ -1,7 +1,7 @@
 //! Options and counts of root searches.
 use serde::Serialize;
 
-/// The use of certificates instead of root searches.
+/// When root searches run, although certificates may make them unnecessary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootSearch {
     /// A search runs only if no certificate excludes an impact. The traces are the same.

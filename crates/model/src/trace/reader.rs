@@ -141,7 +141,7 @@ impl<R: Read> Reader<R> {
         self.records.offset()
     }
 
-    /// Returns the layout.
+    /// Returns the layout of the records.
     pub fn layout(&self) -> Layout {
         self.layout
     }

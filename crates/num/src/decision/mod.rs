@@ -68,13 +68,13 @@ crate::closed_set! {
     /// The level that has decided. The cheapest level is first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Level {
-        /// The signs of the coefficients, or the interval sum of their terms, decide (L0).
+        /// The signs of the coefficients, or the interval sum of their terms, decide (level 0).
         Range,
-        /// The Bernstein coefficients of one polynomial on `[0, 1]` decide (L1).
+        /// The Bernstein coefficients of one polynomial on `[0, 1]` decide (level 1).
         Bernstein,
-        /// The subdivision of `[0, 1]` decides (L2).
+        /// The subdivision of `[0, 1]` decides (level 2).
         Subdivision,
-        /// Integer arithmetic decides (L3).
+        /// Integer arithmetic decides (level 3).
         Exact,
     }
 }
@@ -102,8 +102,10 @@ pub struct CertifiedDecision {
 ///
 /// Coefficients must be in the order highest power first, untrimmed. With `units` 0 (or bounds that are all 0) the
 /// result is that of [`find_exact_first_time`] and never `Borderline`. A coefficient that is not finite always gives
-/// `Borderline`. With errors, so does a polynomial whose coefficients' sizes spread over more than 400 powers of two
-/// and which is so close to the limit that only integers could decide, because they might take a tenth of a second.
+/// `Borderline`.
+///
+/// With errors, only integers can decide a polynomial that is very close to the limit. If the sizes of its coefficients
+/// spread over more than 400 powers of two, this might take a tenth of a second, so the result is `Borderline`.
 ///
 /// # Panics
 /// Panics if there are more than [`MAX_POLYNOMIALS`] polynomials, or one of them has more than [`MAX_COEFFICIENTS`]

@@ -1,4 +1,4 @@
-//! Subdivision of `[0, 1]`: L2 of [`super::decide`].
+//! Subdivision of `[0, 1]`: level 2 of [`super::decide`].
 //!
 //! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between
 //! its smallest and its largest Bernstein coefficient; each list has a bound on its rounding, which grows with every

@@ -45,7 +45,7 @@ const SAMPLES: u32 = 128;
 const PIECE_SAMPLES: usize = 8;
 
 impl PolynomialPlot<'_> {
-    /// Renders the plot.
+    /// Renders the plot as an `svg` element.
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
         #[expect(clippy::cast_precision_loss, reason = "a handful")]

@@ -20,7 +20,7 @@ const BOTTOM: f64 = 150.0;
 const HEIGHT: f64 = 192.0;
 
 impl PassPlot<'_> {
-    /// Renders the plot.
+    /// Renders the plot as an `svg` element.
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.draw_text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);

@@ -34,7 +34,7 @@ const LANE_HEIGHT: f64 = 14.0;
 const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
-    /// Renders the plot.
+    /// Renders the plot as an `svg` element.
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);

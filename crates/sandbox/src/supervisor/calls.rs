@@ -43,7 +43,7 @@ pub(super) const ALLOWED_CALLS: &[NamedCall] = calls![
     SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
 ];
 
-/// Older calls that start a process. Compilers need them, and submissions do not.
+/// Older calls that start a process. Compilers need them, but no submission needs them.
 pub(super) const FORK_CALLS: &[NamedCall] = calls![; old: SYS_fork SYS_vfork];
 
 /// Calls that create links and special files. They are answered with `EPERM`. The folder's rules forbid most of them as

@@ -235,7 +235,7 @@ fn host_path(path: &Path) -> PathBuf {
     host.into()
 }
 
-/// The new root, while it is built.
+/// The root directory for the submission, which is still being assembled.
 struct FileView {
     mounted_places: Vec<(PathBuf, Access)>,
 }
@@ -256,7 +256,7 @@ impl FileView {
             std::fs::create_dir_all(&real)?;
         } else {
             std::fs::create_dir_all(real.parent().unwrap_or(Path::new("/")))?;
-            // The file is already visible, because a folder above it is.
+            // If a folder above the file is mounted, the file already exists.
             if !real.exists() {
                 File::create(&real)?;
             }

@@ -125,8 +125,8 @@ impl Group {
     }
 
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
-        // Files are counted here, mainly those in the working folder, and so are buffers of others. Neither counts for
-        // the program's own limit.
+        // The group also counts files, mainly those in the working folder, and buffers of other files. The program's
+        // own limit counts neither.
         let limits = &order.limits;
         let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY_BYTES);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);

@@ -110,7 +110,7 @@ fn try_execution() -> (Option<String>, bool) {
     }
 }
 
-/// Tests whether a control group can kill a child. Returns the limits of the group, and whether it can.
+/// Tests whether a control group can kill a child. Returns the limits of the group, and whether it can kill.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::create(&RunOrder::default())?;
     let mut entry_files = group.open_entry_files()?;

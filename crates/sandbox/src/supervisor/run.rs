@@ -112,7 +112,7 @@ pub(super) struct Run {
     stderr: CapturedStream,
     start_time: Instant,
     main_status: Option<i32>,
-    /// The reason why the program was killed; `None` if it was not.
+    /// The reason why the program was killed; `None` if it ended by itself.
     kill_reason: Option<RunEnd>,
     peak_memory: u64,
     /// The number of bytes of memory that are not resident for any process, at the last check of mappings.

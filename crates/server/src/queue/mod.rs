@@ -31,9 +31,9 @@ use utoipa::ToSchema;
 /// The kind of work that a job needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JobKind {
-    /// Grading, which workers do.
+    /// A worker grades a submission.
     Grading,
-    /// Sending scores to learning platforms, which the service itself does.
+    /// The service itself sends scores to a learning platform.
     Passback,
 }
 

@@ -53,7 +53,7 @@ pub trait Grader: Clone + Send + Sync + 'static {
     fn check_ability(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
     /// Grades the file `submission`. If the suite is an archive, it is the file `suite`. The grader may write into
-    /// `folder`. After `stop` is canceled, the grading ends soon, and so does everything that it started.
+    /// `folder`. After `stop` is canceled, the grading and everything that it started end soon.
     fn grade(
         &self,
         task: &Task,

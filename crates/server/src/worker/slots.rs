@@ -39,7 +39,7 @@ const MAX_SCENES: u32 = 1_000_000;
 const WORK_FOLDER: &str = "work";
 
 /// Runs jobs, one in each slot, until `stop` is canceled. Unfinished jobs are then given back. The folders of jobs are
-/// created in `folder`. The caller must empty it; the slots do not.
+/// created in `folder`. The caller must empty this folder afterwards.
 ///
 /// # Errors
 ///

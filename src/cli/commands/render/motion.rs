@@ -53,7 +53,7 @@ pub(super) struct Motion {
     pub(super) pictures: u32,
     /// The rectangle that contains all positions.
     pub(super) extent: Extent,
-    /// The reason why the motion ends before the scene does.
+    /// The reason why the motion ends earlier than the scene.
     pub(super) stop_reason: Option<String>,
     rows: BufReader<SpooledTempFile>,
     width: usize,

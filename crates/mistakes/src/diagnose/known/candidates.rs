@@ -34,9 +34,7 @@ pub(super) struct Candidates<'a> {
 }
 
 impl<'a> Candidates<'a> {
-    /// Creates the programs.
-    ///
-    /// `correct` is the program to which the mistakes are added.
+    /// Creates a program for each row that applies to the scene. The row's mistake is added to the program `correct`.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: ApproachForm) -> Self {
         let trials = Trials::new(reference, scene, correct);
         let candidates = applicable_rows(scene).map(|row| (row, trials.program(&[row]))).collect();
@@ -106,7 +104,8 @@ impl<'a> Candidates<'a> {
         remaining.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 
-    /// Returns whether the program logs the same as the submission in this step.
+    /// Returns whether the program logs the same as the submission in this step. Values that are kept from earlier
+    /// steps, and single precision, are recognized from the step's context instead.
     fn reproduces(&self, (row, program): &Candidate, sample: &KeptStep) -> bool {
         match row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.keeps_polynomials,

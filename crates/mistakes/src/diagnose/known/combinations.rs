@@ -229,7 +229,7 @@ impl<'a> Search<'a> {
 
     /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
     fn empty_stage_rows(&self) -> Vec<&'static Row> {
-        // For bodies at rest the approach polynomial is zero, too, but the overlap polynomial before it is not.
+        // For bodies at rest the approach polynomial is zero, too, but not the overlap polynomial before it.
         let logs_zeros = self.scan.wrong_steps.iter().any(|kept| {
             let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
             let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();

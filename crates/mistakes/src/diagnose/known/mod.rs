@@ -166,8 +166,8 @@ fn explain_combination(
     all
 }
 
-/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. Returns `None`
-/// if no row reproduces enough, or if a correct variant does.
+/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. The mistake is
+/// `None` if no row reproduces enough steps, or if a correct variant reproduces them.
 fn find_best_mistake(
     reference: &mut Reference<'_>,
     scene: &Scene,

@@ -15,7 +15,7 @@ use std::cell::Cell;
 const MAX_WORK: u64 = 200_000;
 
 /// Returns whether the mistake changes a logged value on this scene by more than round-off. Returns `false` if the
-/// search would take too long, or if the course's library does that part of the work: in t2m2 the library responds, so
+/// search would take too long, or if the course's library does that part of the work. In t2m2 the library responds, so
 /// a program's own impulses show only in `hybrid`.
 pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))

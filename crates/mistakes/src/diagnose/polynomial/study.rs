@@ -125,8 +125,8 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// Returns the number of samples with a property, or `None` if fewer than half of the wrong ones have it, if the
-    /// first wrong one lacks it, or if right ones contradict it.
+    /// Returns the number of samples with a property. Returns `None` if fewer than half of the wrong samples have it,
+    /// if the first wrong sample lacks it, or if right samples contradict it.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.is_right).is_some_and(|first| !holds(first)) {
             return None;
@@ -287,8 +287,8 @@ pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item 
     (0..count).map(move |index| index * length / count)
 }
 
-/// Returns whether a polynomial has only one certain coefficient. It then fits any coefficient of the same sign at some
-/// scale, which proves nothing.
+/// Returns whether a prediction matches the logged polynomial at some scale. If fewer than two coefficients are
+/// certain, every scale fits, so the case's own scale is used.
 fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     if predicted.iter().filter(|coefficient| exceeds_round_off(**coefficient)).count() < 2 {
         return polynomial_matches(predicted, case.logged, case.scale);

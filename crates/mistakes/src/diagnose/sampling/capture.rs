@@ -10,7 +10,7 @@ use fosssim_model::{
 /// The observer that keeps the records of a step.
 #[derive(Debug, Default)]
 pub struct Capture {
-    /// Whether the reference's impulses are logged; in `hybrid` they are not.
+    /// Whether the reference's impulses are logged. `hybrid` logs none.
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,

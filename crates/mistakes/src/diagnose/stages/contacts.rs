@@ -205,7 +205,7 @@ impl ContactStage {
         }
     }
 
-    /// Returns whether the vector and the time are right.
+    /// Returns whether the vector and the time of a contact are right, and collects the right or wrong values.
     fn is_right_hit(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
         let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };

@@ -144,7 +144,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
 }
 
 /// Returns whether the bodies of an impulse round's contact do not change again: all later passes use the positions
-/// after the loop.
+/// after the loop. The result is also `true` if the trace does not contain these positions.
 fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.mid_states()) else { return true };
     facts.is_continuous()
@@ -152,7 +152,7 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
             .all(|pass| facts.fits_motion(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
 
-/// Returns the explanation of steps with several contacts, if each contact alone is right but the state is not.
+/// Returns the explanation of steps with several contacts, if each contact alone is right but the state is wrong.
 fn explain_several_contacts(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong

@@ -127,7 +127,7 @@ impl IntegerPolynomial {
         Self::new(self.0.iter().enumerate().skip(1).map(|(i, value)| value * BigInt::from(i)).collect())
     }
 
-    /// Returns the product.
+    /// Returns the product of both polynomials.
     fn multiply(&self, other: &Self) -> Self {
         let mut product = vec![BigInt::ZERO; (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
@@ -179,7 +179,7 @@ impl IntegerPolynomial {
     }
 
     /// Returns whether the two have no common zero modulo [`MODULUS`]. This proves that they have none at all, because
-    /// reduction keeps a common factor's degree if it keeps a leading coefficient.
+    /// reduction keeps a common factor's degree if it keeps a leading coefficient. If it does not, returns `false`.
     fn is_coprime_modulo_prime(&self, other: &Self) -> bool {
         let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(reduce_modulo_prime).collect() };
         let (mut a, mut b) = (reduced(self), reduced(other));

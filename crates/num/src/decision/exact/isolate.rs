@@ -111,8 +111,7 @@ fn count_variations(polynomial: &IntegerPolynomial) -> usize {
     signs.clone().zip(signs.skip(1)).filter(|(one, next)| one != next).count()
 }
 
-/// Returns the only zero in an open interval whose ends may be zeros as well; the interval is narrowed until they are
-/// not.
+/// Returns the only zero in an open interval. If an end of the interval is a zero as well, the interval is narrowed.
 fn isolate_root(polynomial: &IntegerPolynomial, start: BigInt, exponent: u64) -> Root {
     let end: BigInt = &start + 1;
     let (lo, hi) = (DyadicNumber { numerator: start, exponent }, DyadicNumber { numerator: end, exponent });

@@ -1,4 +1,4 @@
-//! The exact decision, with integers instead of rounding. It is L3 of [`super::decide`], and the reference for tests.
+//! The exact decision, with integers instead of rounding. It is level 3 of [`super::decide`], and the tests' reference.
 //!
 //! Doubles are integers times powers of two, so each polynomial is a positive factor times one with integer
 //! coefficients, and signs do not depend on the factor. The zeros of all of them are those of one square-free

@@ -129,7 +129,7 @@ impl Staff {
                published_at = CASE WHEN ? = 0 THEN assignment.published_at END
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
-        // The new suite hides groups, or it is unknown whether it does.
+        // A suite whose groups are unknown may also hide some.
         let hides_groups = change.suite.is_none_or(|suite| suite.hides);
         let withholds_groups = was_published && hides_groups && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.to_json(), withholds_groups];

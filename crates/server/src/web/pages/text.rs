@@ -19,7 +19,7 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::format_minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Formats points and the maximum, with at max_points two decimals, as reports do. Without points, the text is a dash.
+/// Formats points and the maximum with at most two decimals, like reports. Without points, the text is a dash.
 pub(super) fn points(points: &Option<String>, max_points: &Option<String>) -> String {
     match (points, max_points) {
         (Some(points), Some(max_points)) => format!("{} of {}", round_points(points), round_points(max_points)),

@@ -296,7 +296,7 @@ terms! {
 }
 
 impl TermRow {
-    /// Returns the area of the assignment.
+    /// Returns the area of the assignment to which the term belongs.
     pub const fn area(&self) -> Area {
         match self.part {
             Part::Force(_) => Area::Forces,

@@ -42,7 +42,7 @@ impl NamedEdit {
 pub enum FormulaEdit {
     /// The change has a name in explanations.
     Named(&'static NamedEdit),
-    /// All formulas use other inputs.
+    /// The inputs of all formulas are changed by this function.
     OtherInputs(fn(&mut Inputs)),
     /// A term of the first reading's coefficient of `t^power`, which its letters name, has this additional factor.
     Weight(Subject, usize, &'static [usize], f64),

@@ -40,7 +40,7 @@ pub struct Formula {
 }
 
 impl Formula {
-    /// Returns the values of the letters.
+    /// Returns the values of the formula's letters for these inputs.
     pub fn letter_values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
     }

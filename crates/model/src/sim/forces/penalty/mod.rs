@@ -107,7 +107,7 @@ impl PenaltyParameters {
         let [first, second] = bodies.edges[edge];
         let (x1, x2, x3) = (vector_at(x, i), vector_at(x, first), vector_at(x, second));
         let x32 = x3 - x2;
-        // The clamp keeps a NaN, unlike the comparisons of the responses.
+        // `f64::clamp` keeps NaN. `response::clamp` returns 0 for NaN.
         let alpha = ((x1 - x2).dot(&x32) / x32.dot(&x32)).clamp(0.0, 1.0);
         let n = (x2 + alpha * x32) - x1;
         let (r1, r2) = (bodies.radii[i], bodies.edge_radii[edge]);
