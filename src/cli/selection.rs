@@ -22,7 +22,7 @@ impl Selection {
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
             let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
             if !names.iter().any(|name| matches_pattern(&pattern, name)) {
-                bail!("{word} matches no scene; there are {}", nearest_names(bare, names));
+                bail!("{word} matches no scene; the scenes are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
         }
@@ -77,7 +77,7 @@ mod tests {
         let error = |word: &str| Selection::new(&[word.to_owned()], &NAMES).expect_err("none").to_string();
         assert_eq!(
             error("Impulses/rope"),
-            "Impulses/rope matches no scene; there are \
+            "Impulses/rope matches no scene; the scenes are \
              Impulses/rope-bridge, Impulses/ball, Geometric/ball-on-edge and 1 \
              more"
         );

@@ -89,7 +89,7 @@ fn invalid_input_is_rejected_before_anything_is_written() {
     for (words, says) in [
         ("scene.xml --output x.gif --size 0x480", "0x480 is out of range; width and height must be 16 to 7680 pixels"),
         ("scene.xml --output x.gif --size 640x99999999999", "is not a size; write WIDTHxHEIGHT"),
-        ("scene.xml --output x.gif --fps 0", "--fps may be 1 to 240"),
+        ("scene.xml --output x.gif --fps 0", "--fps must be 1 to 240"),
         ("scene.xml --output x.gif --every 0", "--every"),
         ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and --every 4"),
         ("scene.xml --output x.png", "x.png can hold one picture: add --step N"),

@@ -21,7 +21,7 @@ fosssim_num::closed_set! {
         PolynomialCount = "wrong number of polynomials",
         /// A polynomial has a wrong number of coefficients.
         PolynomialDegree = "wrong polynomial degree",
-        /// All coefficients of the reference are tiny, but those of the trace are not.
+        /// All coefficients of the reference are tiny, but the trace has a larger one.
         VanishingPolynomial = "polynomial should vanish",
         /// A coefficient differs after the polynomials were rescaled.
         Coefficient = "wrong coefficient",
@@ -157,7 +157,7 @@ pub enum FindingDetail {
         /// The first coefficients in the trace, at most six.
         actual: Polynomial,
     },
-    /// The reference's polynomial is zero up to round-off, but the trace's is not.
+    /// The reference's polynomial is zero up to round-off, but the trace's polynomial is not zero.
     VanishingPolynomial {
         /// The place of the polynomial in the step.
         place: PolynomialPlace,

@@ -74,7 +74,7 @@ impl Display for SteplessFinding<'_> {
                 expected.coefficients().len()
             ),
             FindingDetail::VanishingPolynomial { place, .. } => {
-                write!(f, "{place}: the reference's coefficients all vanish, but the trace's do not")
+                write!(f, "{place}: all coefficients of the reference are tiny, but the trace has a larger one")
             }
             FindingDetail::Coefficient { place, power, expected, actual, .. } => {
                 write!(f, "{place}, {}: {}, expected {}", PowerText(power), ExactNumber(actual), ExactNumber(expected))
@@ -216,7 +216,7 @@ pub fn count_whole_passes(expected: usize, actual: usize, per_pass: usize) -> Op
 }
 
 /// Returns whether a text has only visible ASCII characters and blanks. Reports check all their texts with it. It is in
-/// this crate because this crate is optimized, and that of reports is not.
+/// this crate because this crate is optimized, unlike the reports' crate.
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
 }

@@ -22,7 +22,7 @@ fosssim_num::closed_set! {
         /// The program ends with an exit code that means an error.
         Error = "end with an error code",
         /// The program exceeds the time limit.
-        Time = "run out of time",
+        Time = "exceed the time limit",
         /// The program exceeds the memory limit.
         Memory = "need more memory than allowed",
         /// The program exceeds an output limit.

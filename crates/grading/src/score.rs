@@ -136,7 +136,7 @@ fn point_share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Opti
 pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
     if !grade.groups.iter().all(|group| POINTS_RANGE.contains(&group.max_points)) || grade.max_points != max_points {
-        Some("the maximum points are not those of a suite")
+        Some("the maximum points do not fit any suite")
     } else if grade.points != points || !grade.groups.iter().all(is_consistent) {
         Some("the points do not follow from the verdicts")
     } else if grade.verdict != verdict {

@@ -287,7 +287,7 @@ fn describe_unknown(key: &str, keys: &[TableKey], place: &str) -> String {
         Some(name) => format!("did you mean `{name}`?"),
         None => match TABLE_KEYS.iter().find(|(_, other)| names(other).any(|name| name == key)) {
             Some((other, _)) => format!("it belongs in {other}"),
-            None => format!("there are {}", own_keys.collect::<Vec<_>>().join(", ")),
+            None => format!("the keys are {}", own_keys.collect::<Vec<_>>().join(", ")),
         },
     };
     format!("unknown key `{key}` in {place}: {hint}")

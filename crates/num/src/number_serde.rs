@@ -41,7 +41,7 @@ impl schemars::JsonSchema for WrittenNumber {
 
     fn json_schema(_: &mut schemars::SchemaGenerator) -> schemars::Schema {
         schemars::json_schema!({
-            "description": "A number; a text where it is not finite.",
+            "description": "A number, or a string if it is not finite.",
             "anyOf": [{ "type": "number" }, { "enum": ["nan", "-nan", "inf", "-inf"] }],
         })
     }

@@ -73,7 +73,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let (end, particles) = (simulation.state(), 0..scene.particles.len());
     let names = scene.forces.iter().map(|force| force.kind().element()).chain(["penalty"]);
     let mut parts: Vec<(&str, &Vec<f64>)> = names.zip(&all).collect();
-    // A force that the scene defines is shown even if it is zero. The penalty force is not.
+    // A force that the scene defines is shown even if it is zero. A penalty force of zero is not shown.
     parts.retain(|(name, gradient)| *name != "penalty" || has_any(gradient));
     if parts.len() > 1 {
         parts.push(("together", &sum));

@@ -96,9 +96,7 @@ impl DetectReport<'_> {
         if let Some(place) = &self.place {
             text += &match place.pass {
                 Some(pass) => format!("  pass {} of {}: {}\n", pass.index + 1, place.passes, PassText(pass)),
-                None => {
-                    "  this scene has no continuous-time detection; the motion is that of the whole step\n".to_owned()
-                }
+                None => "  this scene has no continuous-time detection; the motion covers the whole step\n".to_owned(),
             };
         }
         text + &render_motion(&study.motion, format_exact, style) + &self.computation(format_exact, style)

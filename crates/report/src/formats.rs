@@ -10,7 +10,7 @@ use std::borrow::Cow;
 
 /// The warning in a report for students that leaves groups out.
 const HIDDEN_GROUPS_WARNING: &str =
-    "points, verdict and likely mistakes are those of the groups shown here; other groups are hidden";
+    "points, verdict and likely mistakes cover only the groups shown here; other groups are hidden";
 
 /// Declares the formats. Each row has the format's name, whether one document can hold the grades of several
 /// submissions, and the function that renders it. That function also receives the skipped entries, which are not

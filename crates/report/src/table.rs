@@ -27,9 +27,9 @@ impl<T: Into<String>> From<T> for Cell {
 /// The alignment of a column's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// The text begins at the left edge, as words do.
+    /// The text begins at the left edge. This suits words.
     Left,
-    /// The text ends at the right edge, as numbers do.
+    /// The text ends at the right edge. This suits numbers.
     Right,
 }
 

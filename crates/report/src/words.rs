@@ -125,7 +125,7 @@ fn describe_unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} contains a polynomial or a collision.")
 }
 
-/// Describes in one sentence why a grade is not fully accepted; `None` if it is.
+/// Describes in one sentence why a grade is not fully accepted. Returns `None` if everything is accepted.
 pub fn describe_reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
         return Some(unfit);
@@ -196,7 +196,7 @@ fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
         (_, done) if done == steps => " after its last step".to_owned(),
         (Some(_), done) => format!(" at step {} of {steps}", done + 1),
         (None, 0) => String::new(),
-        (None, done) => format!("; the last complete record is that of step {done} of {steps}"),
+        (None, done) => format!("; the last complete record belongs to step {done} of {steps}"),
     }
 }
 

@@ -55,7 +55,7 @@ layers! {
 /// The first version of Landlock that restricts signals.
 const SIGNAL_SCOPE_ABI: u8 = 6;
 
-/// Whether a layer works on this host, and why or why not.
+/// Whether a layer works on this host, and the reason.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayerReport {
     /// The layer that the report is about.
@@ -188,7 +188,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
 fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
-        (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),
+        (false, true) => Some("the grader and the programs are not root, but are in root's group".into()),
         (false, false) => Some("the grader is not root".into()),
     };
     [

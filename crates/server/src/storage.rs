@@ -68,7 +68,7 @@ impl Storage {
     async fn find_fault(&self) -> Option<&'static str> {
         match db::read_version(&self.database).await {
             Ok(db::NEWEST) => {}
-            Ok(_) => return Some("the tables are not those of this version"),
+            Ok(_) => return Some("the tables belong to another version"),
             Err(error) => {
                 tracing::error!(%error, "the database does not answer");
                 return Some("the database does not answer");

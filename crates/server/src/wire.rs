@@ -25,7 +25,7 @@ pub(crate) struct WorkerReport {
     /// The maximum number of parallel gradings. It is 0 while the worker can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
-    /// The reason why the worker can't grade; `None` if it can.
+    /// The reason why the worker can't grade, if there is one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
     /// The worker's version.

@@ -25,7 +25,7 @@ impl Student {
         Vec2::new(self.add_product(v.x, s, w.x), self.add_product(v.y, s, w.y))
     }
 
-    /// Returns the dot product.
+    /// Returns the dot product with this rounding.
     pub fn dot(self, a: Vec2, b: Vec2) -> f64 {
         self.add_product(a.x * b.x, a.y, b.y)
     }

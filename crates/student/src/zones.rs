@@ -131,7 +131,7 @@ fn find_root(parents: &[usize], mut particle: usize) -> usize {
     particle
 }
 
-/// Returns whether two lists contain the same zones, in any order.
+/// Returns whether the student's program finds the same zones in two lists, in any order.
 pub fn has_same_zones(student: Student, old: &[Zone], new: &[Zone]) -> bool {
     let same = |one: &Zone, other: &Zone| match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesEqualByCount) => true,

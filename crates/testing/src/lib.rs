@@ -125,7 +125,7 @@ fn check_allowed(need: Need, required: &str) -> Result<(), String> {
         }
         if !NAMES.iter().any(|(_, known)| *known == word) {
             let known = NAMES.map(|(_, known)| known).join(", ");
-            return Err(format!("{REQUIRE} asks for `{word}`; known are all, {known}"));
+            return Err(format!("{REQUIRE} asks for `{word}`; the known words are all, {known}"));
         }
     }
     Ok(())

@@ -119,7 +119,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         }
         Ok(exit::ACCEPTED)
     } else {
-        bail!("the demo did not end as it should: the right sample must be accepted and the wrong one must not")
+        bail!("the demo did not end as it should: the right sample must be accepted, and the wrong one rejected")
     }
 }
 

@@ -41,7 +41,7 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
         let Some(format) = Format::from_name(name) else {
             let format_names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
             bail!(
-                "no format {name}; there are {}{}",
+                "there is no format {name}; the formats are {}{}",
                 format_names.join(", "),
                 suggestions::suggest(name, format_names.iter().copied())
             );

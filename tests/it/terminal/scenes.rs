@@ -71,6 +71,6 @@ fn scenes_are_exported_and_what_is_there_is_not_harmed() {
     assert_eq!(workspace.read(&mine), library::scene(exported[0]).expect("a scene"));
     let run = workspace.run(["scene", "export", "NoSuchTests/*", "--output", "none"]);
     assert_eq!(run.code, Some(2));
-    assert!(run.err().contains("NoSuchTests/* matches no scene; there are "), "{}", run.err());
+    assert!(run.err().contains("NoSuchTests/* matches no scene; the scenes are "), "{}", run.err());
     assert!(!workspace.exists("none"));
 }

@@ -68,7 +68,7 @@ pub enum StageFault {
     Rounds(RoundCountError),
     /// The impulse rounds are right, but the values after them are wrong.
     HandedOver {
-        /// The quantity that is wrong; `None` if both positions and velocities are.
+        /// The quantity that is wrong; `None` if both positions and velocities are wrong.
         quantity: Option<Quantity>,
         /// The end of the loop after which the values are wrong; `None` if they are wrong after any end.
         when: Option<LoopEnd>,
@@ -82,9 +82,9 @@ pub enum StageFault {
     LaterRounds,
     /// In rounds after the first one, detection uses the predicted positions again.
     RoundsOfPrediction,
-    /// The second detection is right, but the rounds after it are not.
+    /// The second detection is right, but the rounds after it are wrong.
     BehindFirstRound,
-    /// The geometric part runs when it should not, or does not run when it should.
+    /// The geometric part runs in a step that does not need it, or is missing in a step that needs it.
     Geometric(WrongGeometric),
     /// A detection pass of the geometric part starts from wrong positions.
     ZonePositions(WrongPositions),
@@ -109,7 +109,7 @@ pub struct WrongChange {
     /// The quantity that is wrong. If positions are wrong, velocities are right. If velocities are wrong, positions
     /// agree with the wrong velocities.
     pub quantity: Quantity,
-    /// The component that is wrong: 0 for x or 1 for y; `None` if both are.
+    /// The component that is wrong: 0 for x or 1 for y; `None` if both are wrong.
     pub axis: Option<usize>,
     /// The particles whose states change wrongly.
     pub particles: ChangedParticles,
@@ -212,7 +212,7 @@ fosssim_num::closed_set! {
 pub enum WrongResponses {
     /// The contacts change nothing.
     Nothing,
-    /// These quantities do not change, although they should.
+    /// These quantities stay the same, although they should change.
     Unchanged(Vec<ChangedQuantity>),
     /// These quantities also change at a right angle to the contact vector.
     Across(Vec<ChangedQuantity>),
@@ -223,7 +223,7 @@ pub enum WrongResponses {
 /// A quantity that a contact changes, and the body that it belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ChangedQuantity {
-    /// The kind of pair between which the contact is.
+    /// The kind of the pair that is in contact.
     pub kind: PairKind,
     /// The body to which the quantity belongs. 0 is the pair's first particle. 1 is the second particle, or the edge's
     /// first endpoint. 2 is the edge's second endpoint.
@@ -311,9 +311,9 @@ fosssim_num::closed_set! {
         /// Some particles of a zone are not moved with the zone.
         Partly = "some of a zone's particles are not moved with it",
         /// Some particles do not stop, although their zone should stop.
-        PartlyStopped = "in zones that must stop, some particles do not",
-        /// Zones that should be moved are not.
-        Unmoved = "some zones that should move do not",
+        PartlyStopped = "some particles of zones that must stop still move",
+        /// Zones that should be moved stay in place.
+        Unmoved = "some zones that should move stay in place",
         /// Zones that should be moved are stopped.
         Stop = "zones stop although nothing in them is fixed",
         /// Contacts that share particles are moved one after the other, instead of as one zone.
@@ -336,14 +336,14 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongMotion {
         /// The center of mass of the zones moves wrongly.
-        Center = "the center of mass of a zone does not move as it should",
+        Center = "the center of mass of a zone moves wrongly",
         /// The distances between particles of a zone change.
         Distances = "the distances between particles of a zone change",
-        /// The zones do not rotate, although they should.
+        /// The rotation of the zones is missing.
         NoTurn = "zones do not rotate",
-        /// The zones rotate less than they should.
+        /// The zones rotate too little.
         LessTurn = "zones rotate too little",
-        /// The zones rotate more than they should.
+        /// The zones rotate too much.
         MoreTurn = "zones rotate too much",
         /// The zones rotate in the opposite direction.
         TurnBack = "zones rotate in the opposite direction",
@@ -477,7 +477,7 @@ impl StageFault {
 pub struct NonFiniteValue {
     /// The number of the step, from 1; 0 is the first record. `None` if the explanation covers several traces.
     pub step: Option<u32>,
-    /// The stage whose inputs are finite but whose result is not.
+    /// The stage whose inputs are finite but whose result is not finite.
     pub stage: NanStage,
     /// Whether the value is NaN; otherwise it is infinite.
     pub is_nan: bool,
@@ -487,14 +487,14 @@ pub struct NonFiniteValue {
     pub recovers: bool,
 }
 
-/// The first stage of a step whose inputs are finite but whose result is not.
+/// The first stage of a step whose inputs are finite but whose result is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NanStage {
     /// The first record already contains a value that is not finite.
     FirstRecord,
     /// The motion within the step, before any contact.
     Motion,
-    /// The integrator, while it solves a system of equations.
+    /// The system of equations that the integrator solves.
     ImplicitMotion,
     /// The coefficients that the detection computes. The value is the kind of pair, if it is known.
     Detection(Option<PairKind>),

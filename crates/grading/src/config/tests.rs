@@ -89,7 +89,7 @@ fn unknown_keys_and_bad_values_are_reported_together() {
         "18:10: credit \"step\" is unknown; choose \"scenes\", \"steps\" or \"all\"; did you mean \"steps\"?",
         "21:10: group \"b\" has no scenes",
         "22:10: points is -1: it must be between 0 and 1000000",
-        "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, extra, credit",
+        "23:1: unknown key `weight` in this [[group]]: the keys are name, scenes, points, extra, credit",
     ] {
         assert!(told.contains(line), "{line}\n{told}");
     }

@@ -185,7 +185,7 @@ impl BoundedPairMotion {
         }
     }
 
-    /// Returns the detection polynomials.
+    /// Returns the polynomials by which detection decides about this motion.
     pub fn polynomials(&self) -> ExpectedPolynomials {
         let mut expected = ExpectedPolynomials::default();
         match *self {

@@ -109,7 +109,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
         let help = match grammar::find_closest(&text, names.iter().copied()) {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("allowed are {}", join_names(&names)),
+            None => format!("the allowed values are {}", join_names(&names)),
         };
         self.report_bad_value(name, help);
         None
@@ -156,7 +156,8 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             self.report_problem(Severity::Error, name, || {
                 let help = match of.count {
                     0 => format!("there is no {}", of.noun),
-                    count => format!("allowed is 0 to {}; numbering starts at 0", count - 1),
+                    1 => "must be 0; numbering starts at 0".to_owned(),
+                    count => format!("must be from 0 to {}; numbering starts at 0", count - 1),
                 };
                 (format!("is {written}, but the scene has no such {}", of.noun), help)
             });
@@ -174,7 +175,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             "1" => return Some(true),
             "true" | "yes" => "write `1`",
             "false" | "no" => "write `0`",
-            _ => "allowed are `0` and `1`",
+            _ => "must be `0` or `1`",
         };
         self.report_bad_value(name, help);
         None
@@ -187,7 +188,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             if (0.0..=1.0).contains(&value) {
                 return Some(value);
             }
-            self.report_bad_value(name, "allowed is 0 to 1");
+            self.report_bad_value(name, "must be from 0 to 1");
             None
         };
         let (red, green, blue) = (component("r"), component("g"), component("b"));
@@ -239,7 +240,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                 self.report_error(
                     attribute.name,
                     &message,
-                    "known are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`",
+                    "the known references are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`",
                 );
                 None
             }

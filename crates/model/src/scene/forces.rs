@@ -9,9 +9,9 @@ use fosssim_num::vector::Vec2;
 pub(super) trait AttributeSource {
     /// The reason why an attribute cannot be used.
     type Error;
-    /// Returns the index of an edge.
+    /// Returns the index of an edge that the attribute `name` contains.
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// Returns the index of a particle.
+    /// Returns the index of a particle that the attribute `name` contains.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
     /// Returns a number, or the default if there is one. `odd` describes the unexpected effect of a negative value.
     fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;

@@ -54,7 +54,7 @@ fn numbers() {
 
 #[test]
 fn references_in_values() {
-    let known = "known are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`";
+    let known = "the known references are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`";
     for (value, words) in [
         ("&foo;", "has an unknown entity `&foo;`"),
         ("a & b", "has an `&` without `;`"),
@@ -76,7 +76,7 @@ fn truth_values_and_whole_numbers() {
     let particle = |fixed: &str| with(&format!("<particle px='3' py='0' vx='0' vy='0' m='1' fixed='{fixed}'/>"));
     assert_eq!(particle("true"), "4:52: `fixed` of particle 2 is `true` (write `1`)");
     assert_eq!(particle("No"), "4:52: `fixed` of particle 2 is `No` (write `0`)");
-    assert_eq!(particle("2"), "4:52: `fixed` of particle 2 is `2` (allowed are `0` and `1`)");
+    assert_eq!(particle("2"), "4:52: `fixed` of particle 2 is `2` (must be `0` or `1`)");
     assert_eq!(particle(" 1 "), "fine");
     says("<edge i='0.0' j='1'/>", "4:10: `i` of edge 0 is `0.0` (write a whole number)");
     says(
@@ -101,8 +101,8 @@ fn names_that_do_not_exist() {
     says("<collision type='Hybrid'/>", "4:18: `type` of collision is `Hybrid` (did you mean `hybrid`?)");
     says(
         "<collision type='contest'/>",
-        "4:18: `type` of collision is `contest` (allowed are `none`, `simple`, `penalty`, `continuous-time` and \
-         `hybrid`)",
+        "4:18: `type` of collision is `contest` (the allowed values are `none`, `simple`, `penalty`, \
+         `continuous-time` and `hybrid`)",
     );
     says(
         "<collisiondetection type='contest'/>",
@@ -188,11 +188,11 @@ fn what_is_there_twice() {
 fn indices() {
     says(
         "<edge i='0' j='2'/>",
-        "4:16: `j` of edge 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:16: `j` of edge 0 is 2, but the scene has no such particle (must be from 0 to 1; numbering starts at 0)",
     );
     says(
         "<edge i='-1' j='1'/>",
-        "4:10: `i` of edge 0 is -1, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:10: `i` of edge 0 is -1, but the scene has no such particle (must be from 0 to 1; numbering starts at 0)",
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
     // An unreadable index proves nothing about the other one.
@@ -204,18 +204,18 @@ fn indices() {
         ),
         (
             "<gravitationalforce i='0' j='9' G='1'/>",
-            "4:30: `j` of gravitationalforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering \
-             starts at 0)",
+            "4:30: `j` of gravitationalforce 0 is 9, but the scene has no such particle (must be from 0 to 1; \
+             numbering starts at 0)",
         ),
         (
             "<vortexforce i='9' j='0' kbs='1' kvc='1'/>",
-            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering \
-             starts at 0)",
+            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (must be from 0 to 1; \
+             numbering starts at 0)",
         ),
         (
             "<particlecolor i='2' r='0' g='0' b='0'/>",
-            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering \
-             starts at 0)",
+            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (must be from 0 to 1; \
+             numbering starts at 0)",
         ),
         (
             "<edgecolor i='0' r='0' g='0' b='0'/>",
@@ -227,8 +227,8 @@ fn indices() {
         ),
         (
             "<particlepath i='2' duration='1' r='0' g='0' b='0'/>",
-            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering \
-             starts at 0)",
+            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (must be from 0 to 1; \
+             numbering starts at 0)",
         ),
     ] {
         says(inner, words);
@@ -244,8 +244,8 @@ fn values_that_make_no_sense() {
     assert_eq!(particle("m='1' radius='-1'"), "4:63: `radius` of particle 2 is `-1` (a radius cannot be negative)");
     says(
         "<backgroundcolor r='0' g='1.5' b='-1'/>",
-        "4:27: `g` of backgroundcolor is `1.5` (allowed is 0 to 1)\n4:35: `b` of backgroundcolor is `-1` (allowed is \
-        0 to 1)",
+        "4:27: `g` of backgroundcolor is `1.5` (must be from 0 to 1)\n4:35: `b` of backgroundcolor is `-1` (must be \
+        from 0 to 1)",
     );
     says(
         "<particlepath i='0' duration='-1' r='0' g='0' b='0'/>",

@@ -36,7 +36,7 @@ impl fmt::Debug for Sha {
 pub struct ShortDigest(pub u64);
 
 impl ShortDigest {
-    /// Returns the shortened digest.
+    /// Returns the first eight bytes of a digest.
     pub(super) fn from_digest(digest: Sha256) -> Self {
         let [a, b, c, d, e, f, g, h, ..] = finish(digest).0;
         Self(u64::from_be_bytes([a, b, c, d, e, f, g, h]))

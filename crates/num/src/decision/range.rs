@@ -1,7 +1,7 @@
 //! The two extreme choices of a detection's coefficients, and the results that follow from their signs and Bernstein
 //! coefficients.
 //!
-//! Levels L0 and L1 of [`super::decide`] check one polynomial at a time. Every comparison allows for the rounding of
+//! Levels 0 and 1 of [`super::decide`] check one polynomial at a time. Every comparison allows for the rounding of
 //! the computation itself, so its result is proved (rounding as in Higham, *Accuracy and Stability of Numerical
 //! Algorithms*, section 3.1).
 use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
@@ -65,11 +65,11 @@ impl Problem {
     /// Panics if there are too many polynomials or coefficients.
     #[inline]
     pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: IntervalEnd) -> Self {
-        assert!(polynomials.len() <= MAX_POLYNOMIALS, "more polynomials than a detection has");
+        assert!(polynomials.len() <= MAX_POLYNOMIALS, "a detection never has so many polynomials");
         let empty = ExactPolynomial { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
         let mut problem = Self { list: [empty; MAX_POLYNOMIALS], count: polynomials.len() };
         for (exactly, polynomial) in problem.list.iter_mut().zip(polynomials) {
-            assert!(polynomial.len() <= MAX_COEFFICIENTS, "a polynomial of higher degree than a detection has");
+            assert!(polynomial.len() <= MAX_COEFFICIENTS, "a detection's polynomial never has so many coefficients");
             exactly.length = polynomial.len();
             for (value, &coefficient) in exactly.coefficients.iter_mut().zip(polynomial.iter().rev()) {
                 *value = interval_end(coefficient, units, ends);
@@ -183,7 +183,7 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl ExactPolynomial {
-    /// Tries level L0. The signs exclude a hit if no coefficient is positive, or if the positive terms cannot
+    /// Tries level 0. The signs exclude a hit if no coefficient is positive, or if the positive terms cannot
     /// compensate a negative constant.
     #[inline]
     fn try_signs(&self) -> Option<f64> {
@@ -198,7 +198,7 @@ impl ExactPolynomial {
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
-    /// Tries level L1. All Bernstein coefficients must be negative.
+    /// Tries level 1. All Bernstein coefficients must be negative.
     #[inline]
     fn try_bernstein(&self) -> Option<f64> {
         // The polynomial is positive at 0, so no search is needed.

@@ -211,7 +211,8 @@ fn zone_name(zone: &Zone<'_>) -> String {
 fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(usize) -> Vec2) -> String {
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| scene.particles[particle].fixed) {
-        return "  a half-plane or a fixed particle stops it: x is that of the step's start, v is 0\n".to_owned();
+        return "  a half-plane or a fixed particle stops it: x is the position at the step's start, v is 0\n"
+            .to_owned();
     }
     let mass = |particle: usize| scene.particles[particle].mass;
     let rate = 1.0 / members().map(mass).sum::<f64>();

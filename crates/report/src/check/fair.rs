@@ -98,7 +98,7 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
         };
         let first = match first.step {
             0 if fair.findings.wrong_steps == 0 => String::new(),
-            0 => ", and so is the first record".to_owned(),
+            0 => ", and the first record is also wrong".to_owned(),
             _ if outcome.steps == 1 => String::new(),
             step => format!(", the first is step {step}"),
         };

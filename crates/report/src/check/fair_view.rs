@@ -13,7 +13,7 @@ view! {
     pub(super) struct FairView<'a> from fair: Judgement {
         /// The verdict by the fair rules. It is `none` if judging stopped early before a fault was found.
         verdict: FairVerdict = fair.verdict,
-        /// The reason why the whole trace is rejected; null if it is not.
+        /// The reason why the whole trace is rejected; null if there is none.
         refusal: Option<FairRefusal> = fair.refusal,
         /// The number of steps with at least one finding. The first record is not a step.
         wrong_steps: u64 = fair.findings.wrong_steps,

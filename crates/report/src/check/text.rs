@@ -279,7 +279,7 @@ pub(crate) fn list_notes(check: &Check<'_>) -> Vec<String> {
             damage.frame, damage.step, damage.offset, damage.what
         ));
         if outcome.damaged_steps > 0 && outcome.parity.findings.counts.total() > 0 {
-            notes.push("the original counts the rest of a damaged record; the fair rules do not".to_owned());
+            notes.push("the original counts the rest of a damaged record; the fair rules ignore it".to_owned());
         }
     }
     if outcome.trailing_bytes {

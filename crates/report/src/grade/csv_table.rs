@@ -103,7 +103,7 @@ fn empty_rows(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) 
 fn write_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in std::iter::once(head).chain(rows) {
-        // Writing to memory fails only if rows differ in length, which the rows above do not.
+        // Writing to memory fails only if rows differ in length. These rows have the same length.
         let _ = writer.write_record(&row);
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()

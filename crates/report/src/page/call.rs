@@ -41,7 +41,7 @@ struct Row {
     power: usize,
     expected: String,
     own: String,
-    /// A word for what is wrong with the coefficient; empty if nothing is.
+    /// A word for the fault of the coefficient; empty if the coefficient is right.
     word: &'static str,
 }
 
@@ -87,8 +87,8 @@ fn describe_decision(study: &Study) -> String {
     DetectReport { study, place: None }.decision(format_g)
 }
 
-/// Returns whether a curve has a zero within the step. Without a zero, a curve is nearly a flat line, which a sentence
-/// describes better.
+/// Returns whether a curve has a zero within the step. Without a zero, a plot shows only the signs, which one sentence
+/// can state.
 fn changes_sign(study: &Study) -> bool {
     study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }
@@ -177,7 +177,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
-    // The names must be short, because they are left of the bars. The title says which polynomial it is.
+    // The names must be short, because they are left of the bars. The title names the polynomial.
     let curves =
         [plot_polynomial("expected".to_owned(), expected, set), plot_polynomial("yours".to_owned(), logged, &own)];
     let title = format!("Step {step}: {role}, expected and yours");

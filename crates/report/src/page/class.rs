@@ -140,8 +140,10 @@ impl ClassContent<'_> {
             let wrong: Vec<&SceneGrade> = grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
             let first = format!("{}: {}", wrong[0].scene, words::summarize(wrong[0]));
             let heading = match wrong.len() {
-                1 => "No mistake is named, but the same scene fails for the same reason".to_owned(),
-                count => format!("No mistake is named, but the same {count} scenes fail for the same reason"),
+                1 => "No known mistake fits, but these submissions fail the same scene for the same reason".to_owned(),
+                count => format!(
+                    "No known mistake fits, but these submissions fail the same {count} scenes for the same reason"
+                ),
             };
             Cluster { heading, members, first: Some(shorten(&to_one_line(&first))), ..Cluster::default() }
         });
@@ -384,7 +386,7 @@ mod tests {
         let html = page(&grades);
         let cluster = html.split("class=\"cluster\"").nth(1).expect("one cluster");
         let cluster = &cluster[..cluster.find("</details>").expect("its end")];
-        assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("<b>2</b>"), "{cluster}");
+        assert!(cluster.contains("fail the same 9 scenes") && cluster.contains("<b>2</b>"), "{cluster}");
         assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
         assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
         let last = scene_key("Group/a-scene-of-number-75");

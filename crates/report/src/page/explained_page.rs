@@ -13,8 +13,8 @@ use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
 /// Returns how hard the fault of a case is to see. The clearest case has the smallest value. The criteria are whether
-/// the case has a picture, whether its mistake is a common one, how many mistakes can't be distinguished, and how large
-/// the motion is.
+/// the case has a picture, whether its mistake is a common one, the number of mistakes that can't be distinguished, and
+/// the size of the motion.
 fn clarity_rank((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
@@ -77,7 +77,7 @@ impl ExplainedContent<'_> {
         common.iter().filter(|_| cases.len() > 1).map(move |explanation| (explanation, explained(explanation)))
     }
 
-    /// Renders the smallest scenes.
+    /// Renders an article for each smallest scene.
     fn smallest(&self) -> String {
         let Diagnosis { cases, smallest: small, .. } = self.page.diagnosis;
         let small = small.iter().zip(&self.page.cards[cases.len()..]).zip(1..);

@@ -136,7 +136,7 @@ impl GradeContent<'_> {
         self.listed.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
     }
 
-    /// Renders the smallest scenes.
+    /// Renders an article for each smallest scene.
     fn smallest(&self) -> String {
         let card = |small: &SmallestScene| (self.page.card)(small.card.as_deref());
         let all = self.grade.smallest.iter().zip(1..);
@@ -194,7 +194,7 @@ fn describe_score(grade: &Grade) -> String {
     }
 }
 
-/// Renders the output of a build.
+/// Renders the text that a build printed.
 fn build_output(build: &Build) -> String {
     render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
 }

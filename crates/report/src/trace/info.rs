@@ -31,7 +31,7 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     format!("{value:#}\n")
 }
 
-/// Describes the damage of a trace, and where it is.
+/// Describes the damage of a trace and its place.
 pub(super) fn describe_place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

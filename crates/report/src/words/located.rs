@@ -20,12 +20,11 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
     let verb = failing.name();
     let record = match step {
-        0 => "the first one".to_owned(),
-        step => format!("that of step {step}"),
+        0 => "is the first one".to_owned(),
+        step => format!("belongs to step {step}"),
     };
     let mut text = format!(
-        "{which} {verb}, and none of the {without} others. In the first of them, {first}, the last complete record is \
-        {record}."
+        "{which} {verb}, and none of the {without} others. In the scene {first}, the last complete record {record}."
     );
     if !others.is_empty() {
         let (shown, more) = others.split_at(others.len().min(MAX_NAMED_FEATURES));
@@ -70,8 +69,8 @@ mod tests {
         };
         assert_eq!(
             describe_located(&found),
-            "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
-             GeometricTests/chain, the last complete record is that of step 14. Equally likely: those with a hybrid \
+            "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the scene \
+             GeometricTests/chain, the last complete record belongs to step 14. Equally likely: those with a hybrid \
              step (zones: one)."
         );
         let some = LocatedFailure {
@@ -85,8 +84,7 @@ mod tests {
         assert_eq!(
             describe_located(&some),
             "7 of the 9 scenes in which the failsafe moves a zone (held by: a half-plane) crash or run into a limit, \
-             and none of the 61 others. In the first of them, GeometricTests/chain, the last complete record is the \
-             first one."
+             and none of the 61 others. In the scene GeometricTests/chain, the last complete record is the first one."
         );
     }
 }

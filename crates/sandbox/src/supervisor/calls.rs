@@ -115,7 +115,7 @@ pub(super) const CALL_GROUPS: [&[NamedCall]; 10] = [
     FORBIDDEN_CALLS,
 ];
 
-/// Returns the usual name of a call.
+/// Returns the usual name of a call, or its number if it has no name here.
 pub(super) fn call_name(number: i64) -> String {
     let entry = CALL_GROUPS.into_iter().flatten().find(|(_, entry)| *entry == number);
     entry.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())

@@ -98,7 +98,7 @@ pub struct Submission {
     /// Whether the submission waits although no worker is connected that could grade it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub lacks_worker: bool,
-    /// The progress of the grading, while it runs.
+    /// The progress of the grading; null if no grading is running.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<Progress>,
     /// The result that counts; null until the submission is graded.
@@ -295,7 +295,7 @@ pub struct QueueWorker {
     /// The time of the worker's last report, in milliseconds since 1970.
     pub seen_at: i64,
     /// The time since which the worker claims no jobs because it can't grade, in milliseconds since 1970; null if it
-    /// can.
+    /// claims jobs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
     /// The number of the worker's faults since its last result.

@@ -112,7 +112,7 @@ pub struct StepReader<'a> {
 }
 
 impl<'a> StepReader<'a> {
-    /// Reads the first record.
+    /// Begins to read a trace, with its first record.
     pub fn new(scene: &Scene, source: Source<'a>) -> Self {
         let layout = Layout::for_scene(scene);
         let mut reader = LenientReader::from_slice(source.beginning, layout).with_limit(record_memory(scene));

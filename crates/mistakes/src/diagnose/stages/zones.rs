@@ -155,7 +155,7 @@ impl<'a> FirstRound<'a> {
         particles.iter().all(|&particle| self.is_at(state, particle))
     }
 
-    /// Returns the expected state of a zone.
+    /// Returns the state after only this zone has moved.
     pub(super) fn expected_state(&self, zone: &ParticleGroup) -> State {
         self.moved_state(&[zone])
     }

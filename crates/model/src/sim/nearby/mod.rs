@@ -46,7 +46,7 @@ const fn pack_indices(first: u32, second: u32) -> IndexPair {
     (first as u64) << 32 | second as u64
 }
 
-/// Returns the two numbers.
+/// Returns the first and the second number.
 fn unpack_indices(numbers: IndexPair) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }

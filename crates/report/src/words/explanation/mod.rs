@@ -25,7 +25,7 @@ pub fn describe(explanation: &Explanation) -> String {
         }
         ExplanationTopic::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
         ExplanationTopic::Scene { has_length } => {
-            let length = if *has_length { "" } else { ", and neither is its length" };
+            let length = if *has_length { "" } else { ", and its length does not match the scene" };
             format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
         ExplanationTopic::Polynomials { subjects, found } => polynomials::describe_evidence(subjects, found),

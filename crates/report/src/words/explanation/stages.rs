@@ -43,7 +43,7 @@ fn describe_fault(fault: &StageFault) -> String {
         StageFault::HandedOver { quantity, when, .. } => {
             let what = quantity.map_or("positions and velocities", plural);
             let when = match when {
-                Some(LoopEnd::RanOut) => " when they run out",
+                Some(LoopEnd::RanOut) => " when maxiters rounds have been made",
                 Some(LoopEnd::Settled) => " when nothing collides any more",
                 None => "",
             };
@@ -61,10 +61,10 @@ fn describe_fault(fault: &StageFault) -> String {
             "the first round is right, as the polynomials of the second one show, but later rounds are wrong"
         }
         StageFault::Geometric(WrongGeometric::Left { always: true }) => {
-            "when the rounds run out, no geometric pass follows"
+            "after the last allowed round, no geometric pass follows"
         }
         StageFault::Geometric(WrongGeometric::Left { always: false }) => {
-            "when the rounds run out, a geometric pass follows in some steps only"
+            "after the last allowed round, a geometric pass follows in some steps only"
         }
         StageFault::Geometric(WrongGeometric::Superfluous) => {
             "the geometric part runs although a round has found nothing"
@@ -155,7 +155,7 @@ const fn plural(quantity: Quantity) -> &'static str {
 pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => {
-            format!("each change is {} what it should be", describe_ratio(Ratios::All(*ratio)))
+            format!("each change is {} the right amount", describe_ratio(Ratios::All(*ratio)))
         }
         StageDetail::Order => {
             "per particle: the particles after it, the edges of which it is not an end, the half-planes".to_owned()
@@ -184,9 +184,9 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         }
         StageDetail::Change { changed, amount, across, wrong, of } => {
             let amount = match amount {
-                Amount::Unwanted => "though it should not".to_owned(),
-                Amount::Right => "as it should along the contact vector".to_owned(),
-                Amount::Ratio(ratios) => format!("by {} what it should", describe_ratio(*ratios)),
+                Amount::Unwanted => "although it should stay the same".to_owned(),
+                Amount::Right => "correctly along the contact vector".to_owned(),
+                Amount::Ratio(ratios) => format!("by {} the right amount", describe_ratio(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
             let (place, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
@@ -195,7 +195,7 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         }
         StageDetail::ZoneCount { count, of } => format!("in {count} of {of} zones of the first round"),
         StageDetail::StoppedVelocities(Ratios::All(ratio)) if is_about(*ratio, 1.0) => {
-            "they keep the velocity from before".to_owned()
+            "they keep their earlier velocity".to_owned()
         }
         StageDetail::StoppedVelocities(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
         StageDetail::CenterMotion(Ratios::All(ratio)) if is_about(*ratio, 0.0) => "it does not move".to_owned(),

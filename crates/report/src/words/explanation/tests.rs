@@ -290,5 +290,5 @@ fn advice_on_a_step_fits_its_mistake() {
 #[test]
 fn a_huge_ratio_has_six_digits() {
     let detail = stages::describe_detail(&StageDetail::Factor(1_267_650_600_228_229_401_496_703_205_376.0));
-    assert_eq!(detail.as_deref(), Some("each change is 1.26765e+30 times what it should be"));
+    assert_eq!(detail.as_deref(), Some("each change is 1.26765e+30 times the right amount"));
 }

@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// Enqueues the submissions to an assignment that are not in the regrade yet, to be graded with the regrade's settings.
-/// Returns their number.
+/// Returns the number of these submissions.
 pub(in crate::domain) async fn enqueue_missing(
     transaction: &mut Transaction,
     regrade_id: i64,

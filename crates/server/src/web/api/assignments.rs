@@ -33,7 +33,7 @@ const MAX_SUITE_BYTES: u64 = 64 << 20;
 pub(super) struct AssignmentInput {
     #[schema(value_type = Title)]
     title: String,
-    /// Whether students see the assignment; by default they do not.
+    /// Whether students see the assignment; by default it is hidden.
     visible: Option<bool>,
     #[serde(default, deserialize_with = "read_whole_numbers")]
     #[schema(value_type = Settings, required = false)]

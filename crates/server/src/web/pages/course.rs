@@ -189,7 +189,7 @@ pub(super) struct People {
 const PEOPLE_PER_PAGE: usize = 200;
 
 impl People {
-    /// Returns whether a member matches the filter.
+    /// Returns whether a member matches the filter, and follows the last member of the preceding page.
     fn includes(&self, member: &MemberInfo) -> bool {
         let search = self.q.trim().to_lowercase();
         let matches_search = member.login.contains(&search) || member.name.to_lowercase().contains(&search);

@@ -23,7 +23,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Creates the inputs of a motion.
+    /// Creates the inputs of the formulas from a pair's motion.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
         let still = |point: Vec2| BoundedPointMotion {

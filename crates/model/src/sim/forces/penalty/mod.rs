@@ -70,7 +70,7 @@ impl Penalty {
 }
 
 impl PenaltyParameters {
-    /// Adds the gradient of a pair.
+    /// Adds a pair's part to the gradient.
     #[inline]
     fn add(self, bodies: &Bodies, pair: Pair, x: &[f64], gradient: &mut [f64]) {
         let (first, second) = (pair.first as usize, pair.second as usize);
