@@ -334,7 +334,7 @@ fn another_scenes_trace_is_asked_about_and_not_explained() {
         let out = text.out();
         let first = out.lines().next().unwrap_or_default();
         assert!(
-            first.ends_with("its length.") == longer && first.contains("Does this trace belong to this scene?"),
+            first.ends_with("match the scene.") == longer && first.contains("Does this trace belong to this scene?"),
             "{first}"
         );
         for blame in ["likely mistake", "First difference", "Where to look", "Likely cause"] {
