@@ -1,12 +1,12 @@
 //! The only crate that opens files.
 //!
 //! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. This crate reports a
-//!   pipe without a reader immediately, and a pipe without a writer after a few seconds, or immediately if a file is
-//!   expected.
+//!   pipe without a reader immediately, and a pipe without a writer after a few seconds. If it expects a file, it
+//!   reports every pipe immediately.
 //! - **Nothing is read without a limit.** A device, a growing file, or a file full of holes is read only up to the
 //!   limit.
-//! - **No link is followed below a [`Folder`]**, neither to read nor to write, so nobody who fills the folder, even at
-//!   the same time, can redirect the access.
+//! - **No link is followed below a [`Folder`]**, neither to read nor to write. A program that fills the folder, even at
+//!   the same time, cannot redirect the access.
 //! - **Written files appear whole** ([`Replacement`]), and replace files of the same name.
 //!
 //! ```

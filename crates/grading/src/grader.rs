@@ -274,7 +274,7 @@ pub(super) enum SceneEvent {
     Graded(Box<Grade>),
 }
 
-/// A submission while it is graded. Any number of jobs may grade its scenes. The first job that needs the program
+/// A submission that is being graded. Any number of jobs may grade its scenes. The first job that needs the program
 /// copies it. The copy is removed when the grade is complete.
 pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,

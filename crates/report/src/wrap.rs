@@ -1,9 +1,9 @@
 //! Breaks lines at blanks, for terminals of a given width.
 //!
 //! The functions work on finished text, so that the code that renders reports needs no width. The rest of a broken line
-//! is indented like its beginning. Color codes have no width. A word that is too long is not broken, and neither is a
-//! line that the reader copies, which begins with `$ `. Every line of a program's output gets a mark (`| `), so that it
-//! can't be mistaken for a line of the report.
+//! is indented like its beginning. Color codes have no width. Words that are too long, and lines that the reader copies
+//! (they begin with `$ `), are not broken. Every line of a program's output gets a mark (`| `), so that it can't be
+//! mistaken for a line of the report.
 use unicode_width::UnicodeWidthChar;
 
 /// The minimum width of the last column if the rest of a broken line is to be indented below it.

@@ -15,7 +15,7 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A trace that is opened, before it is read.
+/// A trace that is opened, but not read yet.
 pub(in crate::cli) struct TraceInput {
     /// The name of the trace as the user typed it, in printable form.
     pub(in crate::cli) name: String,

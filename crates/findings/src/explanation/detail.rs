@@ -141,7 +141,7 @@ pub struct Weight {
 /// The exact form of a fault in a stage of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum StageDetail {
-    /// The pairs are checked in another order than they should be.
+    /// The pairs are checked in a wrong order.
     Order,
     /// All changes are multiplied by the same factor.
     Factor(#[serde(with = "fosssim_num::number_serde")] f64),

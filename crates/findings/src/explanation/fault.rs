@@ -20,7 +20,7 @@ pub enum StepStage {
 /// A fault in a stage of a step. The inputs of the stage are right.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StageFault {
-    /// The pairs are checked in another order than they should be.
+    /// The pairs are checked in a wrong order.
     Order,
     /// The polynomials are right, but the decisions that follow from them are wrong.
     Decisions {

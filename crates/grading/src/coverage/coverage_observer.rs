@@ -29,7 +29,7 @@ pub(super) struct CoverageObserver<'a> {
     step: StepEvents,
 }
 
-/// The events of the current step, before they are complete.
+/// The events of the current step that are still incomplete.
 #[derive(Default)]
 struct StepEvents {
     /// The positions of bodies at the start and at the end of the step, as the current pass uses them.

@@ -3,8 +3,8 @@
 //! [PART-OF-AN-ID]]` builds and calls it.
 //!
 //! It prints one matrix per rule book, the uncaught mistakes, the rejected variants, and a small set of scenes that
-//! catches every catchable mistake. It exits with status 1 if a mistake changes no trace (so that no rule book could
-//! find it), if the fair rules miss a mistake, or if they reject a correct variant.
+//! catches every catchable mistake. It exits with status 1 if the fair rules miss a mistake or reject a correct
+//! variant, or if a mistake changes no trace, so that no rule book could find it.
 #![forbid(unsafe_code)]
 use fosssim_lab::runs::{WatchedScene, is_accepted, judge, record_trace};
 use fosssim_oracle::{

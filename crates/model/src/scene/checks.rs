@@ -1,8 +1,8 @@
 //! Checks for errors that involve several elements of a scene (scene-format.md 6, collisions.md 7).
 //!
-//! Coincidence is exact: two points coincide if their coordinates compare equal, `-0` and `0` included, and a particle
-//! is on an edge or a half-plane if the formula of simulation.md 3 gives the zero vector. Only the start is checked;
-//! the simulator finds what happens later.
+//! Coincidence is exact. Two points coincide if their coordinates compare equal (`-0` equals `0`). A particle is on an
+//! edge or a half-plane if the formula of simulation.md 3 gives the zero vector. Only the start is checked; the
+//! simulator finds what happens later.
 use super::document::Document;
 use super::model::{Collision, CollisionDetection, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};

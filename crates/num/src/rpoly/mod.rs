@@ -50,8 +50,8 @@ pub struct Zeros {
 impl Zeros {
     const REJECTED: Self = Self { is_rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
 
-    /// Returns the count that the original returns: the degree, less if the search stopped early, or `-1` if the
-    /// polynomial was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
+    /// Returns the count that the original returns. This is the degree, or less if the search stopped early. For a
+    /// rejected polynomial (a leading zero, or `c z^m`; root-finder.md 2 and 3) it is `-1`.
     pub fn count(&self) -> i32 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
         if self.is_rejected { -1 } else { self.length as i32 }

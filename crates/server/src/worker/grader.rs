@@ -17,7 +17,7 @@ pub struct GradingOutput {
     pub files: Vec<NewFile>,
 }
 
-/// A file that a grading produced, before it is stored.
+/// A file that a grading produced, but that is not stored yet.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewFile {
     /// The file's name.

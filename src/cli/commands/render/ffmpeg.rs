@@ -43,7 +43,7 @@ pub(super) struct Ffmpeg {
     pipe: Option<ChildStdin>,
     messages: Option<JoinHandle<String>>,
     encoder_watch: Arc<EncoderWatch>,
-    /// The temporary file, until it gets its final name.
+    /// The temporary file, which is renamed at the end.
     output: Option<Output>,
 }
 

@@ -31,8 +31,8 @@ const MAX_POLYNOMIALS: usize = 200_000;
 /// The relative difference below which ratios are equal.
 const RATIO_TOLERANCE: f64 = 1e-6;
 
-/// Returns the observation about the stages of `steps`, or `None` if polynomials with known inputs are wrong, or if
-/// nothing is wrong.
+/// Returns the observation about the stages of `steps`. Returns `None` if polynomials with known inputs are wrong, or
+/// if nothing is wrong.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,

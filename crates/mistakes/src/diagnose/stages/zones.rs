@@ -78,7 +78,7 @@ pub(super) struct FirstRound<'a> {
 }
 
 impl<'a> FirstRound<'a> {
-    /// Returns the zones of a step, or `None` if the step has no first round, or if something before it is wrong.
+    /// Returns the zones of a step. Returns `None` if the step has no first round, or something before it is wrong.
     pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_mid_state())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();

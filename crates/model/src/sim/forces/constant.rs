@@ -2,7 +2,7 @@
 use super::subtract;
 use fosssim_num::vector::Vec2;
 
-/// Adds the gradient, the opposite of the force.
+/// Adds the gradient, which is the negated force.
 pub(super) fn add_gradient(force: Vec2, gradient: &mut [f64]) {
     for index in 0..gradient.len() / 2 {
         subtract(gradient, index, force);

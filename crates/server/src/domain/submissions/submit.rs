@@ -26,7 +26,7 @@ const CROWD_TIMEOUT: Duration = Duration::from_secs(240);
 const MINUTE: i64 = 60 * 1000;
 const HOUR: i64 = 60 * MINUTE;
 
-/// An upload before it becomes a submission.
+/// An upload that is not a submission yet.
 #[derive(Debug, Clone)]
 pub struct Upload<'a> {
     /// The form of the submission: a program, sources or traces.

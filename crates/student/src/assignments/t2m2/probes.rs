@@ -4,8 +4,8 @@
 //! A program can be run on the probe scenes instead. Each is about one part of the assignment. Independent groups of
 //! bodies are far apart in one scene, so that few runs show much.
 //!
-//! Starts and displacements of particles are integers or small dyadic fractions, and the step is half a second, in the
-//! large scenes a quarter; in three scenes the step is not a power of two, which distinguishes velocities from
+//! Starts and displacements of particles are integers or small dyadic fractions. The step is half a second, in the
+//! large scenes a quarter. In three scenes the step is not a power of two, which distinguishes velocities from
 //! displacements. The first step's polynomials therefore have coefficients that can be checked by hand. In the `drift`
 //! scenes this holds for every step, because moving fixed particles are never diverted (simulation.md 1). Gaps and
 //! displacements of the narrow scenes are half a millionth and about four millionths, so any margin that a program adds
