@@ -97,7 +97,7 @@ impl PageSession {
             PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.draw_film(&kind, host),
             PageRequest::Detect(request) => detect::answer(&request),
             PageRequest::Suite(request) => {
-                let (value, submission) = UploadedSubmission::begin_submission(&request, rest)?;
+                let (value, submission) = UploadedSubmission::from_request(&request, rest)?;
                 self.submission = Some(submission);
                 Ok((value, Vec::new()))
             }

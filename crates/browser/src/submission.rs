@@ -49,7 +49,7 @@ pub(crate) struct UploadedSubmission {
 
 impl UploadedSubmission {
     /// Reads the suite. Returns its groups, and the names of their scenes, in order.
-    pub(crate) fn begin_submission(request: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
+    pub(crate) fn from_request(request: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
         let name = request.suite.clone().unwrap_or_else(plan::default_name);
         let (text, dropped) = match (&request.suite, parts.split_first()) {
             (None, Some((text, dropped))) => {

@@ -24,7 +24,7 @@ pub struct CorpusRow {
 ///
 /// # Errors
 /// Fails if the folder is not a corpus.
-pub fn rows(corpus: &Path) -> anyhow::Result<Vec<CorpusRow>> {
+pub fn read_rows(corpus: &Path) -> anyhow::Result<Vec<CorpusRow>> {
     let text = std::fs::read_to_string(corpus.join("verdicts.jsonl")).context("the folder has no verdicts.jsonl")?;
     Ok(text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
 }

@@ -5,7 +5,7 @@ mod overlap;
 pub use overlap::Overlap;
 
 use super::{
-    number::{format_exact, format_tidy},
+    number::{format_exact, format_rounded_or},
     style::{Style, TextStyle},
     table::{Align, Cell, Table},
     view::{WrittenNumber, to_document, to_written_numbers, view},
@@ -154,7 +154,7 @@ impl DetectReport<'_> {
         text += &format!("\n{}\n", style.paint(TextStyle::Strong, "Decision"));
         text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive_intervals, number));
         let look = if study.answer.decision.collides() { TextStyle::Notice } else { TextStyle::Right };
-        text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
+        text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_rounded_or(time, number))));
         text += match study.certain_decision {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
@@ -240,7 +240,7 @@ fn compare_approach(course: &Answer, right: &Answer, number: FormatFn) -> String
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", format_tidy(time, number)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", format_rounded_or(time, number)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
@@ -288,7 +288,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: FormatFn, style: Style) -
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| format_tidy(zero, number)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| format_rounded_or(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -307,9 +307,9 @@ fn format_intervals(list: &[Interval], number: FormatFn) -> String {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", format_tidy(*lo, number)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", format_rounded_or(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", format_tidy(*lo, number), format_tidy(*hi, number)),
+        Interval { lo, hi } => format!("({}, {})", format_rounded_or(*lo, number), format_rounded_or(*hi, number)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }

@@ -4,7 +4,7 @@
 //! `mistakes::together::disclosure`. Data of a submission appear only as numbers.
 use super::{
     detect::format_polynomial,
-    number::{format_count, format_exact, format_tidy},
+    number::{format_count, format_exact, format_rounded_or},
     style::Style,
     view::{to_key, view},
     words::explanation::{describe, describe_place, known_sentence, list_details},
@@ -140,7 +140,7 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
 }
 
 fn format_vector(values: &[f64]) -> String {
-    let number = |value: &f64| format_tidy(*value, format_exact);
+    let number = |value: &f64| format_rounded_or(*value, format_exact);
     match values {
         [value] => number(value),
         values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),

@@ -26,15 +26,15 @@ const ZERO_BOUND: f64 = 1e-13;
 
 /// Formats a number as in a calculation by hand: with few decimals, as a short fraction, or with six digits.
 pub(crate) fn format_short(value: f64) -> String {
-    format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
+    format_rounded_or(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
 }
 
 /// Formats a number with few decimals or as a short fraction, if it differs from that by at most a few roundings.
-/// Otherwise returns the result of `other`.
-pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
+/// Otherwise returns the result of `fallback`.
+pub(crate) fn format_rounded_or(value: f64, fallback: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let is_near = value.abs() < 1e9 && (rounded - value).abs() <= ZERO_BOUND * value.abs();
-    if is_near { format_exact(rounded) } else { format_fraction(value).unwrap_or_else(|| other(value)) }
+    if is_near { format_exact(rounded) } else { format_fraction(value).unwrap_or_else(|| fallback(value)) }
 }
 
 /// Formats a count with separated thousands, such as `1 234 567`. Four digits are not separated.
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn fractions_are_short_and_near() {
         let texts =
-            [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_tidy(value, format_exact));
+            [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_rounded_or(value, format_exact));
         assert_eq!(texts, ["1/3", "-7/11", "0.3", "0.25", "0.3333333"]);
     }
 

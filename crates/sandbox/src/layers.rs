@@ -80,13 +80,19 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
 
 /// Returns the report on a layer. If there is no problem, it contains what the layer does; otherwise the problem and
 /// its remedy.
-fn new_report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
+fn new_report(
+    layer: Layer,
+    problem: Option<String>,
+    success_detail: &str,
+    required: bool,
+    remedy: &'static str,
+) -> LayerReport {
     LayerReport {
         layer,
         active: problem.is_none(),
         required,
         remedy: problem.is_some().then_some(remedy),
-        detail: problem.unwrap_or_else(|| held.to_string()),
+        detail: problem.unwrap_or_else(|| success_detail.to_string()),
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     health,
     lti::score,
     queue::{self, Completion, Failure, GivenUpJob, Lease, QueuePolicy},
-    task::{JUDGE_ERROR, Outcome, round_points},
+    task::{JUDGE_ERROR, Outcome, format_points},
     values,
 };
 use std::time::Duration;
@@ -206,7 +206,7 @@ async fn write_result(
     }
     let text = match (&outcome.points, &outcome.max_points) {
         (Some(points), Some(max_points)) => {
-            format!("{}: {} of {} points", outcome.verdict, round_points(points), round_points(max_points))
+            format!("{}: {} of {} points", outcome.verdict, format_points(points), format_points(max_points))
         }
         _ => outcome.verdict.clone(),
     };

@@ -195,7 +195,7 @@ impl Provider {
     /// # Errors
     ///
     /// Fails if the provider does not answer.
-    pub async fn address(&self, redirect: &str, secrets: SignInSecrets) -> Result<Url, ProviderFault> {
+    pub async fn sign_in_url(&self, redirect: &str, secrets: SignInSecrets) -> Result<Url, ProviderFault> {
         let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let SignInSecrets { state, nonce, verifier } = secrets;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));

@@ -172,7 +172,7 @@ impl Outcome {
 }
 
 /// Formats a number of points with at most two decimals.
-pub fn round_points(number: impl ToString) -> String {
+pub fn format_points(number: impl ToString) -> String {
     let number = number.to_string();
     let Ok(value) = number.parse::<f64>() else { return number };
     let text = format!("{value:.2}");

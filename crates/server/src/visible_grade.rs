@@ -83,7 +83,7 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<StoredTex
     Ok(StoredTexts {
         shown: shown.as_ref().map(to_text).unwrap_or_default(),
         failed: report.as_ref().map(list_failed),
-        parts: report.as_ref().map(parts),
+        parts: report.as_ref().map(list_parts),
     })
 }
 
@@ -100,7 +100,7 @@ fn list_failed(report: &GradeFile) -> String {
 }
 
 /// Returns the parts of a grade as text for the database. Hidden groups are included.
-fn parts(report: &GradeFile) -> String {
+fn list_parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
     let find_text = |scene: &SceneInFile| VERDICT_TEXTS.iter().find(|verdict| scene.code == verdict.0);
@@ -240,6 +240,6 @@ mod tests {
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
         assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
-        assert_eq!(parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[],"scenes":"rw|e"}"#);
+        assert_eq!(list_parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[],"scenes":"rw|e"}"#);
     }
 }

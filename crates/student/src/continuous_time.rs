@@ -8,7 +8,12 @@ use super::{
 };
 
 /// Detects and resolves contacts pair by pair, from `q_start` to the current end of `state`.
-pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
+pub fn handle_collisions(
+    world: &World,
+    q_start: &[f64],
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<(), StepFailure> {
     let student = world.student;
     if student.makes(Mistake::ContinuousDetectAllFirst) {
         return handle_simultaneously(world, q_start, state, log);

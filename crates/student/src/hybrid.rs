@@ -18,7 +18,7 @@ const MAX_ZONES: usize = 1000;
 
 /// Handles a step's collisions. `middle` is called between the two parts, with the state and the log so far, for the
 /// trace's mid record.
-pub fn handle(
+pub fn handle_collisions(
     world: &World,
     q_start: &[f64],
     max_iterations: i32,

@@ -13,7 +13,7 @@ use super::{
 };
 
 /// Handles all pairs in order. Each uses the velocities after the previous pairs.
-pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
+pub fn handle_collisions(world: &World, state: &mut State, log: &mut StepLog) {
     let pass = SimplePass { world, start: state.v.clone() };
     for pair in world.pairs() {
         let one = pair.particle;

@@ -38,15 +38,15 @@ pub fn step(
     }
     match world.scene.collision {
         Collision::None | Collision::Penalty { .. } => {}
-        Collision::Simple { .. } => simple::handle(world, state, log),
+        Collision::Simple { .. } => simple::handle_collisions(world, state, log),
         Collision::ContinuousTime { .. } => {
-            continuous_time::handle(world, &q_start, state, log)?;
+            continuous_time::handle_collisions(world, &q_start, state, log)?;
             if !student.makes(Mistake::LogNoMid) {
                 write(state, log);
             }
         }
         Collision::Hybrid { max_iterations, .. } => {
-            hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
+            hybrid::handle_collisions(world, &q_start, max_iterations, state, log, &mut |state, log| {
                 if !matches!(student.mistake_in(MODULE_AREAS), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
                     write(state, log);
                 }

@@ -75,7 +75,7 @@ impl FolderResults {
         if metadata.nlink() > 1 {
             // The journal has several names (hard links), because of a backup or a student. It is copied, so that the
             // file under the other name does not change.
-            file = copy(&file, sound, &opened).map_err(at(JOURNAL_NAME))?;
+            file = copy_journal_start(&file, sound, &opened).map_err(at(JOURNAL_NAME))?;
         }
         // The bytes after the last whole line are removed; a crash left them.
         file.set_len(sound).map_err(at(JOURNAL_NAME))?;
@@ -141,7 +141,7 @@ pub fn for_each_line<E: From<io::Error>>(
 }
 
 /// Creates a new journal with the first `length` bytes of another.
-fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
+fn copy_journal_start(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
     let mut own = folder.replacement(OsStr::new(JOURNAL_NAME), None)?;
     file.rewind()?;
     io::copy(&mut file.take(length), &mut own)?;

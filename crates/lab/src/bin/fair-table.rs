@@ -18,7 +18,7 @@ fn main() -> anyhow::Result<()> {
     let mut arguments = std::env::args().skip(1);
     let corpus = arguments.next().context("usage: fair-table CORPUS [--all]")?;
     let (corpus, all) = (Path::new(&corpus), arguments.next().is_some());
-    let rows = corpus::rows(corpus)?;
+    let rows = corpus::read_rows(corpus)?;
     let judged: Vec<Option<(Overall, Judgement)>> =
         rows.par_iter().map(|row| judge(corpus, row)).collect::<anyhow::Result<_>>()?;
     let mut summary: BTreeMap<(&str, String, String), u32> = BTreeMap::new();

@@ -30,7 +30,7 @@ pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanati
     while let Some(step) = steps.next() {
         first.examine_step(&mut reference, scene, step, &steps.frames);
     }
-    first.explanation().into_iter().collect()
+    first.explain().into_iter().collect()
 }
 
 /// Finds the first value that is not finite, step by step.
@@ -76,7 +76,7 @@ impl NonFiniteSearch {
     }
 
     /// Returns the explanation of the found value.
-    pub(super) fn explanation(self) -> Option<Explanation> {
+    pub(super) fn explain(self) -> Option<Explanation> {
         self.explanation
             .map(|found| Explanation::with_topic(Explanation::NOT_FINITE, ExplanationTopic::NotFinite(found)))
     }

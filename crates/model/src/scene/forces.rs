@@ -13,8 +13,13 @@ pub(super) trait AttributeSource {
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
     /// Returns the index of a particle that the attribute `name` contains.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// Returns a number, or the default if there is one. `odd` describes the unexpected effect of a negative value.
-    fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;
+    /// Returns a number, or the default if there is one. `negative_effect` describes the unexpected effect of a negative value.
+    fn number(
+        &mut self,
+        name: &'static str,
+        default: Option<f64>,
+        negative_effect: Option<&str>,
+    ) -> Result<f64, Self::Error>;
     /// Returns the vector of two numbers.
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
         let (x, y) = (self.number(x, None, None), self.number(y, None, None));

@@ -408,12 +408,12 @@ impl AttributeSource for ForceFields<'_, '_, '_, '_> {
         self.first.ok_or(())
     }
 
-    fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, ()> {
+    fn number(&mut self, name: &'static str, default: Option<f64>, negative_effect: Option<&str>) -> Result<f64, ()> {
         let number = match default {
             Some(default) => self.fields.scalar_or(name, default),
             None => self.fields.scalar(name),
         };
-        if let (Some(number), Some(effect)) = (number, odd) {
+        if let (Some(number), Some(effect)) = (number, negative_effect) {
             warn_negative(self.fields, name, number, effect);
         }
         number.ok_or(())

@@ -54,13 +54,13 @@ impl Overlap<'_> {
             "  distance {}, sum of radii {}: they {}overlap\n",
             number(study.distance()),
             number(study.reach),
-            negation(overlap)
+            negation_unless(overlap)
         );
         let [one, other] = study.velocities.map(vector);
         text += &format!(
             "  velocities {one} and {other}, their difference times the normal {}: they {}approach\n",
             number(study.approach()),
-            negation(approach)
+            negation_unless(approach)
         );
         text += &heading("Decision");
         let (look, words) = match study.collides {
@@ -117,8 +117,8 @@ impl Overlap<'_> {
     }
 }
 
-const fn negation(is: bool) -> &'static str {
-    if is { "" } else { "do not " }
+const fn negation_unless(is_true: bool) -> &'static str {
+    if is_true { "" } else { "do not " }
 }
 
 /// A pair at the end of a step, as simple collision handling checks it.

@@ -210,7 +210,7 @@ fn describe_step(step: u32, steps: u32) -> String {
 }
 
 /// Describes a finding whose values are in a table next to the text.
-fn subject(finding: &Finding) -> String {
+fn describe_finding(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
         FindingDetail::WrongNormal { expected, .. } | FindingDetail::ContactTime { expected, .. } => {

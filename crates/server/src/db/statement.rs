@@ -25,7 +25,7 @@ pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
 /// `{strpos}` finds the position of one text in another, and `{quoted}` turns a text into JSON. For PostgreSQL,
 /// placeholders are numbered. Statements contain no other braces or question marks: values are never part of a
 /// statement's text.
-pub(super) fn text(statement: &str, dialect: Dialect) -> String {
+pub(super) fn render_statement(statement: &str, dialect: Dialect) -> String {
     let substitutes: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [
             ("{now}", "CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER)"),
@@ -81,12 +81,12 @@ mod tests {
     fn each_engine_gets_its_own_words() {
         let statement = "SELECT id FROM job WHERE a = ? AND b < {now} AND c = ? {skip locked}";
         assert_eq!(
-            text(statement, Dialect::Postgres),
+            render_statement(statement, Dialect::Postgres),
             "SELECT id FROM job WHERE a = $1 AND b < CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT) \
              AND c = $2 FOR NO KEY UPDATE SKIP LOCKED"
         );
         assert_eq!(
-            text(statement, Dialect::Sqlite),
+            render_statement(statement, Dialect::Sqlite),
             "SELECT id FROM job WHERE a = ? AND b < CAST(unixepoch('now', 'subsec') * 1000 AS INTEGER) AND c = ? "
         );
     }

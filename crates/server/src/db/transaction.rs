@@ -82,7 +82,7 @@ impl Transaction {
     /// # Errors
     /// Fails if the database rejects the statement or does not answer.
     pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
-        let text = statement::text(statement, self.dialect());
+        let text = statement::render_statement(statement, self.dialect());
         let done = match &mut self.inner {
             Inner::Sqlite(inner) => {
                 query!(Sqlite, text, values).execute(&mut **inner).await.map(|done| done.rows_affected())
@@ -99,7 +99,7 @@ impl Transaction {
     /// # Errors
     /// Fails if the database rejects the statement or does not answer.
     pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
-        let text = statement::text(statement, self.dialect());
+        let text = statement::render_statement(statement, self.dialect());
         let rows = match &mut self.inner {
             Inner::Sqlite(inner) => {
                 let rows = query!(Sqlite, text, values).fetch_all(&mut **inner).await;
@@ -152,7 +152,7 @@ impl Transaction {
     /// Runs several statements that are separated by semicolons and take no values, such as definitions of tables.
     pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
         let script = statement::join_parts(script, self.dialect());
-        let text = AssertSqlSafe(statement::text(&script, self.dialect()));
+        let text = AssertSqlSafe(statement::render_statement(&script, self.dialect()));
         match &mut self.inner {
             Inner::Sqlite(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,
             Inner::Postgres(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,

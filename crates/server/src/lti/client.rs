@@ -147,7 +147,7 @@ impl Client {
     }
 
     async fn send(&self, platform: &Platform, request: &ServiceRequest, token: Option<&str>) -> ServiceResult {
-        let Some(url) = platform.service_address(&request.address, self.over_http) else {
+        let Some(url) = platform.parse_registered_url(&request.address, self.over_http) else {
             let host = Url::parse(&request.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "another host".to_owned());
             return Err(ServiceFault::Rejected(format!(

@@ -56,7 +56,7 @@ pub struct Platform {
 }
 
 /// Parses a URL that this service may call: HTTPS with a host, and no user name, password or fragment.
-pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
+pub(super) fn parse_service_url(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let is_secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
     let is_plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
@@ -86,7 +86,7 @@ impl PlatformSettings {
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
         {
             ensure(
-                address(text, over_http).is_some(),
+                parse_service_url(text, over_http).is_some(),
                 Problem::invalid(format!("{name} must be a URL that begins with https://")),
             )?;
         }
@@ -120,14 +120,14 @@ impl Platform {
     fn service_hosts(&self, over_http: bool) -> Vec<String> {
         let settings = &self.settings;
         let hosts = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
-        let hosts = hosts.into_iter().filter_map(|text| address(text, over_http)).map(|url| origin(&url));
+        let hosts = hosts.into_iter().filter_map(|text| parse_service_url(text, over_http)).map(|url| origin(&url));
         hosts.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// Returns a URL of one of the platform's services. Only registered hosts are allowed, so that a message can't
+    /// Parses a URL of one of the platform's services. Only registered hosts are allowed, so that a message can't
     /// make this service call other hosts, or send its token to them.
-    pub(crate) fn service_address(&self, text: &str, over_http: bool) -> Option<Url> {
-        let url = address(text, over_http)?;
+    pub(crate) fn parse_registered_url(&self, text: &str, over_http: bool) -> Option<Url> {
+        let url = parse_service_url(text, over_http)?;
         self.service_hosts(over_http).contains(&origin(&url)).then_some(url)
     }
 
@@ -184,7 +184,7 @@ mod tests {
     #[test]
     fn services_are_on_hosts_that_an_administrator_named() {
         let platform = Platform { id: 1, name: "lms".to_owned(), settings: wish() };
-        let may = |text: &str| platform.service_address(text, false).is_some();
+        let may = |text: &str| platform.parse_registered_url(text, false).is_some();
         assert!(may("https://lms.example.org/lineitems/1?type=2"));
         assert!(may("https://tokens.example.org/x") && may("https://grades.example.org:8443/x"));
         for address in [

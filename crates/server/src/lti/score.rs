@@ -9,7 +9,7 @@ use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
     late_policy::Lateness,
     queue::{self, JobKind, JobOwner, NewJob},
-    task::round_points,
+    task::format_points,
     values,
     visible_grade::VisibleGrade,
 };
@@ -210,7 +210,7 @@ pub(super) async fn record_sent(transaction: &mut Transaction, score: &ReadyScor
     transaction.execute(statement, values![score.order.link, score.order.account, score.stamp]).await?;
     let content = &score.content;
     let what = match (content["scoreGiven"].as_f64(), content["scoreMaximum"].as_f64()) {
-        (Some(points), Some(max_points)) => format!("{} of {} points", round_points(points), round_points(max_points)),
+        (Some(points), Some(max)) => format!("{} of {} points", format_points(points), format_points(max)),
         _ => content["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
     log_event(transaction, score.order, "score sent", &format!("{what}, to {}", score.platform.name)).await

@@ -71,7 +71,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     }
     let (unknown, open): (Vec<WrongPolynomial>, Vec<WrongPolynomial>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
-    explanations.extend(open.iter().map(WrongPolynomial::explanation));
+    explanations.extend(open.iter().map(WrongPolynomial::explain));
     explanations.extend(summarize_unexplained(&unknown));
     explanations.extend(explain_missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
@@ -123,7 +123,7 @@ impl WrongPolynomial<'_> {
     }
 
     /// Explains this polynomial without the others. It must have at least one candidate.
-    fn explanation(&self) -> Explanation {
+    fn explain(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.complete_guesses());
         let first = list_claims(self.study.subject, best).swap_remove(0);
         let claims = std::iter::once(first).chain(self.list_claims(others));

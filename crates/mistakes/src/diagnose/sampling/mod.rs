@@ -44,7 +44,7 @@ pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a
         detections.examine_step(&mut reference, step, &steps.frames);
     }
     TraceSamples {
-        not_finite: first.explanation(),
+        not_finite: first.explain(),
         scan: scanner.into_scan(steps.outline),
         detections: detections.into_samples(),
         reference,

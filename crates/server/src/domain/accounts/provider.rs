@@ -66,7 +66,7 @@ impl Visitor {
         let browser = (&self.secrets, self.secrets.provider_secret.as_ref());
         let started = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
         let address =
-            provider.address(&self.app.answer_address(), self.app.compute_secrets(&started.state).await?).await?;
+            provider.sign_in_url(&self.app.answer_address(), self.app.compute_secrets(&started.state).await?).await?;
         Ok(LoginAnswer { address: address.into(), browser: started.browser })
     }
 

@@ -162,7 +162,7 @@ impl Person {
         };
         transaction.commit().await?;
         let over_http = self.app.lti.over_http();
-        let Some(address) = pending.platform.service_address(&wanted.deep_link_return_url, over_http) else {
+        let Some(address) = pending.platform.parse_registered_url(&wanted.deep_link_return_url, over_http) else {
             return Err(Problem::refused_launch("the platform's return URL is on a host that is not configured"));
         };
         let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));

@@ -260,7 +260,7 @@ impl Staff {
     /// # Errors
     /// Fails if there is no such assignment.
     pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
-        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
         let statement = "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
                platform_score.sent_at, platform_score.fault
             FROM platform_score

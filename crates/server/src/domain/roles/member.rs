@@ -59,11 +59,11 @@ impl Member {
     ///
     /// Fails if the assignment does not exist.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
-        Ok(self.hide_course_suite(self.read_at(slug).await?.1))
+        Ok(self.hide_course_suite(self.read_assignment(slug).await?.1))
     }
 
     /// Begins a transaction that reads, and finds the assignment.
-    pub(in crate::domain) async fn read_at(&self, slug: &str) -> Result<(Transaction, Assignment), Problem> {
+    pub(in crate::domain) async fn read_assignment(&self, slug: &str) -> Result<(Transaction, Assignment), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         Ok((transaction, assignment))
@@ -85,7 +85,7 @@ impl Member {
     /// # Errors
     /// Fails if there is no such assignment.
     pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
-        let (mut transaction, assignment) = self.read_at(assignment).await?;
+        let (mut transaction, assignment) = self.read_assignment(assignment).await?;
         let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
         for submission in &mut submissions {
             if !self.is_staff {
@@ -112,7 +112,7 @@ impl Member {
         if !self.is_staff {
             return self.submissions(&submission.assignment).await;
         }
-        let (mut transaction, assignment) = self.read_at(&submission.assignment).await?;
+        let (mut transaction, assignment) = self.read_assignment(&submission.assignment).await?;
         Ok(view::submissions_of(&mut transaction, assignment.id, submission.account).await?)
     }
 

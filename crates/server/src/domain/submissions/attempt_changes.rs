@@ -82,7 +82,7 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
+    pub async fn attempt_changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
         let graded = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();
         let shown = graded.iter().filter(|(submission, _)| !submission.is_withheld);

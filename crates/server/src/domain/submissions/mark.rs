@@ -10,7 +10,7 @@ use crate::{
     health,
     lti::score,
     problem::{Problem, ensure},
-    task::round_points,
+    task::format_points,
     values,
 };
 
@@ -113,7 +113,7 @@ impl Staff {
                 && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
                 && text.parse().is_ok_and(|points| (0.0..=max.parse().unwrap_or(1e6)).contains(&points))
         };
-        let number = format!("points must be a number between 0 and {}, such as 7.5", round_points(&max));
+        let number = format!("points must be a number between 0 and {}, such as 7.5", format_points(&max));
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
             ensure(points.is_none_or(is_number), Problem::invalid(number))?;
@@ -146,7 +146,7 @@ impl Staff {
     /// # Errors
     /// Fails if there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
-        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
         let statement =
             "SELECT mark.submission, submission.number, mark.request, mark.requested_at, account.login FROM mark
             JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
@@ -161,7 +161,7 @@ impl Staff {
     ///
     /// Fails if the person is not a member and has no submissions.
     pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
-        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
         Ok(StudentHistory {
             login: login.to_owned(),

@@ -167,7 +167,7 @@ impl Staff {
     /// # Errors
     /// Fails if there is no such assignment.
     pub async fn regrades(&self, slug: &str) -> Result<Vec<Regrade>, Problem> {
-        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
         let statement = regrades!("campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100");
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
@@ -177,7 +177,7 @@ impl Staff {
     /// # Errors
     /// Fails if there is no regrade with this ID.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
-        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
@@ -386,7 +386,7 @@ impl FromRow for Change {
         Ok(read_row!(row => Self {
             submission, number, login, old_code, old_points, old_max_points, old_summary, new_code, new_points,
             new_max_points, new_summary;
-            why: differences(row)?,
+            why: describe_differences(row)?,
         }))
     }
 }
@@ -426,7 +426,7 @@ impl Settings {
 }
 
 /// Returns the differences between two gradings of one submission, as sentences.
-fn differences(row: &Row) -> Result<Vec<String>, DbError> {
+fn describe_differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no earlier grade".to_owned()]);
     };

@@ -59,7 +59,7 @@ impl Member {
     /// Fails if the assignment does not accept the upload, or the server can't store it. After an error, there is
     /// either no submission, or another upload with the same key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
-        let (_, assignment) = self.read_at(assignment).await?;
+        let (_, assignment) = self.read_assignment(assignment).await?;
         if !assignment.settings.accepts_form(upload.form) {
             let (accepted, found) = (assignment.settings.describe_forms(), upload.form.describe());
             let detail = format!("this assignment accepts {accepted}, but the file is {found}");
@@ -100,7 +100,7 @@ impl Member {
         announced: Option<(Option<&str>, u64)>,
         since: Instant,
     ) -> Result<i64, Problem> {
-        let (mut transaction, assignment) = self.read_at(assignment).await?;
+        let (mut transaction, assignment) = self.read_assignment(assignment).await?;
         let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
         let arrived_at = now - queue::millis(since.elapsed());
         let Some((key, size)) = announced else { return Ok(arrived_at) };

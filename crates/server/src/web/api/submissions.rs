@@ -9,7 +9,7 @@ use crate::{
     domain::{EnqueuedJobs, History, Member, Staff, Standing, StoredResult, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
-    task::round_points,
+    task::format_points,
 };
 use axum::{
     Json,
@@ -190,11 +190,11 @@ pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) 
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
-        let or_empty = |text: Option<&String>| text.map(round_points).unwrap_or_default();
+        let or_empty = |text: Option<&String>| text.map(format_points).unwrap_or_default();
         let parts = grade.and_then(|grade| Some(&stored.get(&grade.result)?.parts));
         let group_points = |name: &&str| {
             let found = parts?.groups.iter().find(|(group, _)| group == name)?;
-            found.1.map(round_points)
+            found.1.map(format_points)
         };
         let points = groups.iter().map(|group| group_points(group).unwrap_or_default());
         let row = [

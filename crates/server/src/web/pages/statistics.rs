@@ -1,7 +1,7 @@
 //! Statistics of a class's results, and the categories of students.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
-    task::{NEVER_RAN, round_points},
+    task::{NEVER_RAN, format_points},
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
@@ -71,7 +71,7 @@ impl Statistics {
         Self {
             students: standings.len(),
             section_counts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
-            mean_and_median: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
+            mean_and_median: points.map(|count| (format_points(mean(count)), format_points(middle(count)))),
             histogram: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_clusters(standings, likely_mistake),
             duplicates: find_clusters(standings, |row| Some(row.digest.as_str()).filter(|digest| !digest.is_empty()))

@@ -103,7 +103,7 @@ pub(super) async fn show(staff: Staff, AddressParts { course: slug, assignment, 
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
     let frame = grades::class_frame(&staff, &assignment).with_parent(address, &work.name);
-    let changes = staff.changes(&work.submissions).await?;
+    let changes = staff.attempt_changes(&work.submissions).await?;
     let changes = changes.iter().map(|(id, change)| (*id, scenes::describe_change(change))).collect();
     render(&StudentPage { frame, slug, assignment, work, changes, seen_event })
 }

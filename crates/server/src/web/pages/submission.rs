@@ -101,7 +101,7 @@ pub(super) async fn show_submission(member: Member, AddressParts { id, .. }: Add
         (None, Some(_)) => member.attempts(&submission).await?,
         (None, None) => Vec::new(),
     };
-    let changes = member.changes(&attempts).await?;
+    let changes = member.attempt_changes(&attempts).await?;
     render(&SubmissionPage {
         attempts: attempts.into_iter().rev().collect(),
         frame: submission_frame(&member, assignment.as_ref(), &submission),

@@ -4,7 +4,7 @@ use crate::{
     calendar,
     domain::{RegradeState, Submission},
     problem,
-    task::round_points,
+    task::format_points,
 };
 
 /// Formats a time as HTML. The text is in UTC, and a script converts it to the reader's time zone.
@@ -22,8 +22,8 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
 /// Formats points and the maximum with at most two decimals, like reports. Without points, the text is a dash.
 pub(super) fn points(points: &Option<String>, max_points: &Option<String>) -> String {
     match (points, max_points) {
-        (Some(points), Some(max_points)) => format!("{} of {}", round_points(points), round_points(max_points)),
-        (Some(points), None) => round_points(points),
+        (Some(points), Some(max_points)) => format!("{} of {}", format_points(points), format_points(max_points)),
+        (Some(points), None) => format_points(points),
         _ => "\u{2013}".to_owned(),
     }
 }
@@ -59,7 +59,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
 /// Describes a score that a learning platform receives.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(max_points)) => format!("{} / {}", round_points(points), round_points(max_points)),
+        (Some(points), Some(max_points)) => format!("{} / {}", format_points(points), format_points(max_points)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
         _ => "staff must check it".to_owned(),
     }

@@ -72,19 +72,20 @@ impl HitSearch<'_> {
     fn process_row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.cursor.first;
         let [particles, edges, half_planes] = self.input.bodies.object_counts().remaining_row(*self.cursor);
-        if self.decide_particles(simd, first, (particles, rows), output) {
+        if self.decide_particle_pairs(simd, first, (particles, rows), output) {
             return true;
         }
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
         self.group.ensure_computed(simd, self.lists, self.input.bodies, first, edges.start);
-        self.decide_edges(simd, first, edges, output) || self.decide_half_planes(simd, first, half_planes, output)
+        self.decide_edge_pairs(simd, first, edges, output)
+            || self.decide_half_plane_pairs(simd, first, half_planes, output)
     }
 
     /// Decides the pairs of a particle with the edges `seconds`, except those that end in it.
     #[inline(always)]
-    fn decide_edges<S: Simd>(
+    fn decide_edge_pairs<S: Simd>(
         &mut self,
         _: S,
         first: usize,
@@ -104,8 +105,8 @@ impl HitSearch<'_> {
             let Some(row) = self.group.edges[(edge * width + lane) * EDGE_ROW_LENGTH..].first_chunk() else {
                 return false;
             };
-            let (pair, with) = (pair(PairKind::ParticleEdge, first, edge), (&self.input, &mut *self.counts));
-            if compute_edge(pair, row, with, self.cursor, output) {
+            let pair = pair(PairKind::ParticleEdge, first, edge);
+            if compute_edge(pair, row, &self.input, self.counts, self.cursor, output) {
                 return true;
             }
         }
@@ -114,7 +115,7 @@ impl HitSearch<'_> {
 
     /// Decides the pairs of a particle with the half-planes `seconds`.
     #[inline(always)]
-    fn decide_half_planes<S: Simd>(
+    fn decide_half_plane_pairs<S: Simd>(
         &mut self,
         _: S,
         first: usize,
@@ -125,8 +126,15 @@ impl HitSearch<'_> {
         let lane = first - self.group.particles.start;
         let rows = self.group.half_planes.as_chunks::<SHORT_ROW_LENGTH>().0;
         for second in seconds {
-            let (pair, with) = (pair(PairKind::ParticleHalfPlane, first, second), (&self.input, &mut *self.counts));
-            if compute_two_polynomials(pair, &rows[second * width + lane], with, self.cursor, output) {
+            let pair = pair(PairKind::ParticleHalfPlane, first, second);
+            if compute_two_polynomials(
+                pair,
+                &rows[second * width + lane],
+                &self.input,
+                self.counts,
+                self.cursor,
+                output,
+            ) {
                 return true;
             }
         }
@@ -135,7 +143,7 @@ impl HitSearch<'_> {
 
     /// Decides the pairs of a particle with the particles `seconds`.
     #[inline(always)]
-    fn decide_particles<S: Simd>(
+    fn decide_particle_pairs<S: Simd>(
         &mut self,
         simd: S,
         first: usize,
@@ -149,8 +157,8 @@ impl HitSearch<'_> {
         while block < seconds.end && !ends {
             largest = compute_particles(simd, self.lists, [first, block], rows, largest);
             for (row, second) in rows.as_chunks().0[..width].iter().zip(block..seconds.end) {
-                let (pair, with) = (pair(PairKind::ParticleParticle, first, second), (&self.input, &mut *self.counts));
-                ends = compute_two_polynomials(pair, row, with, self.cursor, output);
+                let pair = pair(PairKind::ParticleParticle, first, second);
+                ends = compute_two_polynomials(pair, row, &self.input, self.counts, self.cursor, output);
                 if ends {
                     break;
                 }
@@ -168,13 +176,14 @@ impl HitSearch<'_> {
 fn compute_edge(
     pair: Pair,
     row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
-    with: (&PassInput<'_>, &mut SearchCounts),
+    input: &PassInput<'_>,
+    counts: &mut SearchCounts,
     cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let facts = row[EDGE_FACTS_INDEX].to_bits();
     let ends =
-        facts & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, cursor);
+        facts & OPEN_BIT != 0 && output.decide(counts, |counts| decide_edge(input, counts, pair, row), pair, cursor);
     if facts & OPEN_BIT == 0 {
         output.excluded += 1;
     }
@@ -188,13 +197,14 @@ fn compute_edge(
 fn compute_two_polynomials(
     pair: Pair,
     row: &[f64; SHORT_ROW_LENGTH],
-    with: (&PassInput<'_>, &mut SearchCounts),
+    input: &PassInput<'_>,
+    counts: &mut SearchCounts,
     cursor: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let facts = row[FACTS_INDEX].to_bits();
     let ends = facts & OPEN_BIT != 0
-        && output.decide(with.1, |counts| decide_two_polynomials(with.0, counts, pair, row), pair, cursor);
+        && output.decide(counts, |counts| decide_two_polynomials(input, counts, pair, row), pair, cursor);
     if facts & OPEN_BIT == 0 {
         output.excluded += 1;
     }
