@@ -104,9 +104,9 @@ fn row(name: &str, theirs: [f64; 2], ours: [f64; 2]) {
 
 /// Compares parts of the program with each other, on all embedded scenes.
 fn parts() {
-    let scenes: Vec<(Scene, Vec<u8>)> = library::names()
+    let scenes: Vec<(Scene, Vec<u8>)> = library::scene_names()
         .map(|name| {
-            let xml = library::scene(name).expect("a scene");
+            let xml = library::find_scene(name).expect("a scene");
             let scene = scene::read(name, xml).expect("a sound scene").scene;
             let trace = simulate(&scene, RootSearch::OnDemand);
             (scene, trace)
@@ -170,7 +170,7 @@ fn sandbox() {
     // The largest available course scene, or the largest embedded one without the corpus.
     let xml = corpus()
         .and_then(|corpus| std::fs::read(corpus.join("scenes/t2m2/HolisticTests/test00.xml")).ok())
-        .or_else(|| library::scene("HolisticTests/crowd-of-twenty-balls").map(<[u8]>::to_vec))
+        .or_else(|| library::find_scene("HolisticTests/crowd-of-twenty-balls").map(<[u8]>::to_vec))
         .expect("a scene");
     std::fs::write(folder.path().join("scene.xml"), xml).expect("written");
     let suite = "schema = 1\nname = \"bench\"\n[[group]]\nname = \"one\"\nscenes = [\"scene.xml\"]\n";

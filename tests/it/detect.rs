@@ -141,7 +141,7 @@ fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     let workspace = Workspace::new();
     let scene = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls";
     let row = fosssim_oracle::student::find("pairs-pruned").expect("a mistake");
-    let scene_file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");
+    let scene_file = fosssim_oracle::suite::library::find_scene(&scene["asset:".len()..]).expect("a scene");
     let read = fosssim_oracle::scene::original::read(scene_file);
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));
     let trace = fosssim_oracle::student::record_trace(&read.expect("a scene").scene, student).expect("a trace");
@@ -209,7 +209,7 @@ fn invalid_requests_are_reported() {
 fn the_pair_of_a_later_pass_is_examined_in_that_pass() {
     let workspace = Workspace::new();
     let scene = "asset:ImpulsesTests/row-of-five-one-end";
-    let file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");
+    let file = fosssim_oracle::suite::library::find_scene(&scene["asset:".len()..]).expect("a scene");
     let read = fosssim_oracle::scene::original::read(file).expect("a scene").scene;
     let row = fosssim_oracle::student::find("loop-anew").expect("a mistake");
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));

@@ -21,7 +21,7 @@ mod walk;
 
 /// Returns the scene of the README's first command, and the wrong trace that comes with it.
 fn flawed() -> (&'static [u8], Vec<u8>) {
-    let scene = library::scene("ContinuousTimeTests/spinning-edge-sweeps-balls").expect("an embedded scene");
+    let scene = library::find_scene("ContinuousTimeTests/spinning-edge-sweeps-balls").expect("an embedded scene");
     (scene, std::fs::read(root().join("examples/traces/flawed.bin")).expect("a trace"))
 }
 

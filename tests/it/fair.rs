@@ -30,8 +30,8 @@ const FIRST: [&str; 9] = [
 
 /// Returns all built-in scenes by name, beginning with those of [`FIRST`].
 pub fn assets() -> Vec<(String, Scene)> {
-    let scene = |name: &str| original::read(library::scene(name).unwrap()).unwrap().scene;
-    let mut scenes: Vec<(String, Scene)> = library::names().map(|name| (name.to_owned(), scene(name))).collect();
+    let scene = |name: &str| original::read(library::find_scene(name).unwrap()).unwrap().scene;
+    let mut scenes: Vec<(String, Scene)> = library::scene_names().map(|name| (name.to_owned(), scene(name))).collect();
     scenes.sort_by_key(|(name, _)| FIRST.iter().position(|first| first == name).unwrap_or(FIRST.len()));
     assert!(FIRST.iter().all(|first| scenes.iter().any(|(name, _)| name == first)));
     scenes

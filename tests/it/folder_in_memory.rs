@@ -86,7 +86,7 @@ fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     assert_eq!(outcome.ended, RunEnd::FolderLimit);
     let left = left.memory_folder().expect("the folder");
     let bytes: u64 =
-        left.names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
+        left.list_names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
     assert!(bytes <= 5 << 20, "{bytes} bytes were written");
     assert!(bytes >= 4 << 20, "{bytes} bytes were written");
 }

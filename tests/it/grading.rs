@@ -66,7 +66,7 @@ fn submit_scripts(workspace: &Workspace, programs: &[(&str, &str)]) -> Vec<Strin
     let suite = SUITE.split("[[group]]").next().unwrap_or_default();
     let group = format!("[[group]]\nname = \"Zones\"\nscenes = [\"asset:{SCRIPTED_SCENE}\"]\npoints = 10\n");
     workspace.write("scripts.toml", format!("{suite}{group}"));
-    let scene = library::scene(SCRIPTED_SCENE).expect("an embedded scene");
+    let scene = library::find_scene(SCRIPTED_SCENE).expect("an embedded scene");
     let scene = fosssim_oracle::scene::read(SCRIPTED_SCENE, scene).expect("a scene").scene;
     let trace = student::record_trace(&scene, Student::default()).expect("a trace");
     let write = |bytes: &[u8]| {
@@ -487,7 +487,7 @@ fn a_course_script_counts_with_the_drop_in() {
         return;
     }
     for name in ["SimpleTests/two-balls-overlap-at-step-end", "ContinuousTimeTests/spinning-edge-sweeps-balls"] {
-        let scene = fosssim_oracle::suite::library::scene(name).expect("an embedded scene");
+        let scene = fosssim_oracle::suite::library::find_scene(name).expect("an embedded scene");
         workspace.write(format!("scenes/{name}.xml"), scene);
     }
     symlink(env!("CARGO_BIN_EXE_fosssim-oracle"), workspace.path("FOSSSimOracle")).expect("a link");

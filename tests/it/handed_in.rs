@@ -92,7 +92,7 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
             let trace = workspace.path(format!("{folder}/{name}.bin"));
             std::fs::create_dir_all(trace.parent().expect("a folder")).expect("a folder");
             let xml = workspace.path("scene.xml");
-            std::fs::write(&xml, fosssim_oracle::suite::library::scene(scene).expect("a scene")).expect("written");
+            std::fs::write(&xml, fosssim_oracle::suite::library::find_scene(scene).expect("a scene")).expect("written");
             let mut sample = Command::new(env!("CARGO_BIN_EXE_fosssim-sample"));
             sample.arg("-s").arg(&xml).arg("-o").arg(&trace).stdout(Stdio::null());
             assert!(sample.args(mistake.map(|id| format!("--mistake={id}"))).status().expect("the sample").success());

@@ -21,7 +21,7 @@ pub fn compare(name: &str, scene: &Scene, trace: &[u8]) {
 #[test]
 fn mistakes_are_judged_the_same_one_by_one() {
     for name in ["ContinuousTimeTests/spinning-edge-sweeps-balls", "GeometricTests/rows-collected-over-many-rounds"] {
-        let scene = original::read(library::scene(name).expect("a scene")).expect("a sound scene").scene;
+        let scene = original::read(library::find_scene(name).expect("a scene")).expect("a sound scene").scene;
         CATALOGUE.par_iter().for_each(|row| {
             let trace =
                 student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);

@@ -23,7 +23,7 @@ const SCENES: [&str; 10] = [
 
 fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
     let read = |name: &&'static str| {
-        let scene = original::read(library::scene(name).expect("a scene")).expect("a sound scene").scene;
+        let scene = original::read(library::find_scene(name).expect("a scene")).expect("a sound scene").scene;
         let correct = student::record_trace(&scene, Student::default()).expect("a trace");
         (*name, scene, correct)
     };

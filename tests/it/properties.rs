@@ -20,7 +20,7 @@ fn judge(scene: &Scene, trace: &[u8], threads: usize, root_search: RootSearch) -
 #[test]
 fn simulated_traces_pass_and_the_audit_agrees() {
     let mut searched = 0;
-    for name in library::names() {
+    for name in library::scene_names() {
         let scene = embedded(name);
         let trace = simulate(&scene);
         let outcome = judge(&scene, &trace, 2, RootSearch::Audit);
@@ -40,7 +40,7 @@ fn simulated_traces_pass_and_the_audit_agrees() {
 
 #[test]
 fn a_run_can_be_cut_short_at_its_first_wrong_step() {
-    let scene = embedded(library::names().find(|name| name.starts_with("SimpleTests/")).expect("a scene"));
+    let scene = embedded(library::scene_names().find(|name| name.starts_with("SimpleTests/")).expect("a scene"));
     let mut trace = simulate(&scene);
     trace[..8].copy_from_slice(&1e3_f64.to_le_bytes());
     let options = Options { threads: 1, root_search: RootSearch::OnDemand, stop_at_first: true, ..Options::default() };
@@ -74,7 +74,7 @@ proptest! {
         changes in proptest::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..20),
         cut in proptest::option::of(any::<prop::sample::Index>()),
     ) {
-        let names: Vec<_> = library::names().collect();
+        let names: Vec<_> = library::scene_names().collect();
         let scene = embedded(names[which % names.len()]);
         let mut trace = simulate(&scene);
         for (place, byte) in changes {

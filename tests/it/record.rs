@@ -106,7 +106,7 @@ fn a_named_folder_is_meant_even_when_it_is_not_there() {
 fn every_embedded_scene_is_accepted_with_its_recording() {
     let workspace = Workspace::new();
     let mut scenes = 0;
-    for name in fosssim_oracle::suite::library::names() {
+    for name in fosssim_oracle::suite::library::scene_names() {
         let asset = format!("asset:{name}");
         let run = workspace.run(["check", &asset, &asset]);
         assert_eq!((run.code, run.err().as_str()), (Some(0), ""), "{name}: {}", run.shown());

@@ -9,7 +9,7 @@ use fosssim_oracle::{
 
 #[test]
 fn the_recording_itself_passes_for_every_embedded_scene() {
-    for name in library::names() {
+    for name in library::scene_names() {
         let scene = embedded(name);
         let recording = zstd::decode_all(library::recording(name).expect("a recording")).expect("zstd");
         let outcome = recording::judge(&scene, &simulate(&scene)[..], &recording[..], &mut ()).expect("a recording");

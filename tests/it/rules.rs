@@ -10,7 +10,7 @@ use std::path::Path;
 /// Returns a workspace with an embedded scene and the sample program's trace of it.
 fn sampled(scene: &str, mistake: &str) -> Workspace {
     let workspace = Workspace::new();
-    workspace.write("scene.xml", library::scene(scene).expect("an embedded scene"));
+    workspace.write("scene.xml", library::find_scene(scene).expect("an embedded scene"));
     sample(&workspace.path("scene.xml"), &workspace.path("trace.bin"), mistake);
     workspace
 }

@@ -85,7 +85,7 @@ fn is_state_mistake(row: &Row) -> bool {
 /// Returns all built-in scenes, in order.
 fn assets() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
-    let files = scene_files::list(&folder, ".xml").expect("assets");
+    let files = scene_files::list_files(&folder, ".xml").expect("assets");
     let scenes: Vec<PathBuf> = files.into_iter().map(|file| file.path).collect();
     assert!(scenes.len() >= 20, "only {} scenes", scenes.len());
     scenes

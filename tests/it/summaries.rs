@@ -14,8 +14,9 @@ fn summaries_of_all_embedded_scenes() {
     settings.set_prepend_module_to_snapshot(false);
     settings.set_omit_expression(true);
     let mut scenes = 0;
-    for name in library::names() {
-        let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
+    for name in library::scene_names() {
+        let scene =
+            scene::read(name, library::find_scene(name).expect("an embedded scene")).expect("a sound scene").scene;
         let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let mut observers =
             (Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state()), EventCounts::new(&scene));

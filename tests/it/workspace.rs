@@ -185,7 +185,7 @@ pub fn trace_of(scene: &str) -> Vec<u8> {
 
 /// Returns a scene that comes with the program.
 pub fn embedded(name: &str) -> Scene {
-    scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene
+    scene::read(name, library::find_scene(name).expect("an embedded scene")).expect("a sound scene").scene
 }
 
 /// Returns the reference trace of a scene that has already been read.

@@ -130,7 +130,7 @@ impl Class {
     /// Returns how the output of the drop-in and the original differ for a program's trace of a scene.
     fn differs(&self, originals: &Originals, name: &str, scene: &str) -> Option<String> {
         let workspace = Workspace::new();
-        workspace.write("scene.xml", library::scene(scene).expect("a scene"));
+        workspace.write("scene.xml", library::find_scene(scene).expect("a scene"));
         self.run(name, &workspace);
         if !workspace.exists("trace.bin") {
             return None;

@@ -22,12 +22,12 @@ fn original(originals: &Originals, milestone: Assignment, scene: &[u8]) -> Resul
 #[test]
 fn bundled_scenes_are_recorded_as_their_originals_record_them() {
     let Some(originals) = Originals::find() else { return };
-    let names: Vec<&str> = library::names().collect();
+    let names: Vec<&str> = library::scene_names().collect();
     let differing: Vec<String> = names
         .par_iter()
         .filter_map(|name| {
-            let milestone = library::assignment(name).expect("a scene of a milestone");
-            let scene = library::scene(name).expect("a scene");
+            let milestone = library::find_assignment(name).expect("a scene of a milestone");
+            let scene = library::find_scene(name).expect("a scene");
             let fault = match original(&originals, milestone, scene) {
                 Ok(trace) => {
                     (trace != Recording::for_scene(name, scene).expect("a recording").trace).then(String::new)?

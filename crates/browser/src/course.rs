@@ -53,7 +53,7 @@ impl CourseSuite {
 
 /// Returns whether every page contains the scene anyway.
 fn is_embedded(task: &SceneTask) -> bool {
-    library::scene(&task.name).is_some_and(|xml| xml == task.xml)
+    library::find_scene(&task.name).is_some_and(|xml| xml == task.xml)
 }
 
 /// Returns the file name of a scene, as the suite names it.

@@ -18,10 +18,10 @@ use std::{collections::BTreeMap, io::Read};
 const MAX_FIRST_RECORD_BYTES: u64 = 1 << 16;
 
 /// Lists the names of the scenes by assignment and group, in alphabetical order.
-pub(crate) fn list() -> Value {
+pub(crate) fn list_scenes() -> Value {
     let list_groups = |assignment: Assignment| {
         let mut groups = BTreeMap::<&str, Vec<&str>>::new();
-        for name in library::names().filter(|name| library::assignment(name) == Some(assignment)) {
+        for name in library::scene_names().filter(|name| library::find_assignment(name) == Some(assignment)) {
             let (group, rest) = name.split_once('/').unwrap_or(("", name));
             groups.entry(group).or_default().push(rest);
         }
@@ -39,7 +39,7 @@ pub(crate) fn describe_suite(name: &str) -> Value {
 
 /// Returns the XML of a scene. The name is `Group/name`.
 pub(crate) fn find_xml(name: &str) -> Result<&'static [u8], String> {
-    library::scene(name).ok_or_else(|| {
+    library::find_scene(name).ok_or_else(|| {
         let nearest = suggestions::find_nearest(name, library::all_names(), 3).join(", asset:");
         format!("there is no scene asset:{name}; the nearest are asset:{nearest}")
     })
@@ -54,8 +54,8 @@ pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
     }
-    let begins = |name: &&str| library::scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
-    let scenes: Vec<_> = library::names().filter(begins).collect();
+    let begins = |name: &&str| library::find_scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
+    let scenes: Vec<_> = library::scene_names().filter(begins).collect();
     let kind = detect_file_kind(&start[..start.len().min(SNIFFED_BYTES as usize)])
         .or_else(|| (!begins_with_positions(&start)).then_some("begins with numbers that cannot be positions"));
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))

@@ -77,7 +77,7 @@ impl PageSession {
         match request {
             PageRequest::Scenes => {
                 let suites: Vec<_> = plan::built_in_names().map(|name| scenes::describe_suite(&name)).collect();
-                Ok((json!({ "assignments": scenes::list(), "suites": suites }), Vec::new()))
+                Ok((json!({ "assignments": scenes::list_scenes(), "suites": suites }), Vec::new()))
             }
             PageRequest::Scene { name } => Ok((json!({}), vec![scenes::find_xml(&name)?.to_vec()])),
             PageRequest::Example => {

@@ -103,9 +103,9 @@ impl FilePlace {
     ///
     /// # Errors
     /// Fails if the folder cannot be read, or is reached by a link.
-    pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
+    pub fn list_names(&self) -> io::Result<Vec<std::ffi::OsString>> {
         match self.open_folder() {
-            Ok(folder) => folder.names(),
+            Ok(folder) => folder.list_names(),
             Err(FileError::Missing { .. }) => Ok(Vec::new()),
             Err(error) => Err(io::Error::other(error)),
         }

@@ -89,7 +89,7 @@ impl Folder {
     ///
     /// # Errors
     /// Fails if the folder cannot be read.
-    pub fn names(&self) -> io::Result<Vec<OsString>> {
+    pub fn list_names(&self) -> io::Result<Vec<OsString>> {
         let flags = OFlags::RDONLY | OFlags::DIRECTORY | SAFE_FLAGS;
         let mut names = Vec::new();
         for entry in Dir::new(openat(&*self.fd, ".", flags, Mode::empty())?)? {

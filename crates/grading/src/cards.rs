@@ -162,7 +162,7 @@ mod tests {
         assert!(!cards.path().exists(), "no folder for nothing");
         let (one, again, other) = (keep("one").expect("a card"), keep("one"), keep("other").expect("a card"));
         assert_eq!((again.as_ref(), one == other), (Some(&one), false));
-        assert_eq!(cards.names().expect("a folder").len(), 2);
+        assert_eq!(cards.list_names().expect("a folder").len(), 2);
         assert_eq!(
             (read_card(&cards, &one).as_deref(), read_card(&cards, &other).as_deref()),
             (Some("one"), Some("other"))

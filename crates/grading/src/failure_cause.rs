@@ -116,10 +116,10 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     })
 }
 
-/// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `with` particular ones.
-fn chance_probability(failed: usize, with: usize, all: usize) -> f64 {
+/// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `eligible` particular ones.
+fn chance_probability(failed: usize, eligible: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let share = |one: usize| (with - one) as f64 / (all - one) as f64;
+    let share = |one: usize| (eligible - one) as f64 / (all - one) as f64;
     (0..failed).map(share).product()
 }
 

@@ -375,7 +375,7 @@ impl<'a> SubmissionGrading<'a> {
                 match claim.filter(|claim| claim.key == key).map_or_else(|| shared.claim(key, find), Ok) {
                     Err(done) => *done,
                     Ok(claim) => {
-                        let result = self.run(staged, scene, trace.as_ref(), tell);
+                        let result = self.run_scene(staged, scene, trace.as_ref(), tell);
                         FinishedScene { result, is_reused: false, claim: Some(claim) }
                     }
                 }
@@ -383,7 +383,7 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    fn run(
+    fn run_scene(
         &self,
         staged: &StagedProgram,
         scene: &SceneTask,

@@ -25,18 +25,18 @@ pub const FLAWED_TRACE: (&str, &[u8]) = (
 const GENERATED_ASSIGNMENT: Assignment = Assignment::T2M3;
 
 /// Returns the names of all embedded scenes, in alphabetical order.
-pub fn names() -> impl Iterator<Item = &'static str> {
+pub fn scene_names() -> impl Iterator<Item = &'static str> {
     file_stems(&ASSETS, ".xml")
 }
 
 /// Returns the names of all built-in scenes. They are embedded, or generated when they are needed; generated scenes
 /// have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
-    names().chain(TIMING_SCENES.iter().map(|made| made.name))
+    scene_names().chain(TIMING_SCENES.iter().map(|made| made.name))
 }
 
 /// Returns the content of a built-in scene's file; `None` if there is no scene with this name.
-pub fn scene(name: &str) -> Option<&'static [u8]> {
+pub fn find_scene(name: &str) -> Option<&'static [u8]> {
     contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_generated(name).map(GeneratedScene::xml))
 }
 
@@ -72,7 +72,7 @@ pub fn recording_file(path: &str) -> Option<&'static [u8]> {
 }
 
 /// Returns the assignment in whose folder a scene is.
-pub fn assignment(name: &str) -> Option<Assignment> {
+pub fn find_assignment(name: &str) -> Option<Assignment> {
     if find_generated(name).is_some() {
         return Some(GENERATED_ASSIGNMENT);
     }
@@ -88,7 +88,7 @@ pub fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     match find_version(folder) {
         Some((of, version)) => {
             let matches = Pattern::new(rest).is_ok_and(|rest| rest.matches(name));
-            matches && version.has_scene(name) && assignment(name) == Some(of)
+            matches && version.has_scene(name) && find_assignment(name) == Some(of)
         }
         None => pattern.matches(name),
     }
@@ -147,7 +147,7 @@ mod tests {
                 assert!(Assignment::from_key(key).is_some(), "{key} is no assignment's key");
             }
         }
-        let all: Vec<&str> = names().collect();
+        let all: Vec<&str> = scene_names().collect();
         assert_eq!(all.iter().collect::<BTreeSet<_>>().len(), all.len());
         assert_eq!(recordings().collect::<Vec<_>>(), all, "each has its recording");
     }
@@ -155,12 +155,12 @@ mod tests {
     #[test]
     fn a_scene_is_found_by_its_name_and_by_its_name_in_full() {
         for name in all_names() {
-            let full = format!("{}/{name}", assignment(name).expect("an assignment").key());
-            assert!(scene(name).is_some() && scene(name) == scene(&full), "{name}");
+            let full = format!("{}/{name}", find_assignment(name).expect("an assignment").key());
+            assert!(find_scene(name).is_some() && find_scene(name) == find_scene(&full), "{name}");
             assert!(recording(name) == recording(&full), "{name}");
-            assert_eq!(assignment(&full), assignment(name));
+            assert_eq!(find_assignment(&full), find_assignment(name));
         }
-        assert!(scene("NoSuchTests/none").is_none() && scene("t2m2/SimpleTests/one-ball-into-two").is_none());
+        assert!(find_scene("NoSuchTests/none").is_none() && find_scene("t2m2/SimpleTests/one-ball-into-two").is_none());
         assert!(recording_file("manifest.txt").is_some());
     }
 
@@ -168,12 +168,14 @@ mod tests {
     fn patterns_take_names_or_an_assignments_folder() {
         let taken = |pattern: &str| {
             let pattern = Pattern::new(pattern).expect("a pattern");
-            names().filter(|name| matches_pattern(&pattern, name)).collect::<Vec<_>>()
+            scene_names().filter(|name| matches_pattern(&pattern, name)).collect::<Vec<_>>()
         };
-        let of = |key: &str| names().filter(|name| assignment(name) == Assignment::from_key(key)).collect::<Vec<_>>();
+        let of = |key: &str| {
+            scene_names().filter(|name| find_assignment(name) == Assignment::from_key(key)).collect::<Vec<_>>()
+        };
         assert_eq!(taken("t2m2/*"), taken("t2m2@2/*"), "the newest version is meant");
         assert_eq!(taken("t2m1/*"), of("t2m1"));
-        assert_eq!(taken("*").len(), names().count());
+        assert_eq!(taken("*").len(), scene_names().count());
         assert_eq!(taken("t2m2/GeometricTests/*"), taken("GeometricTests/*"));
         assert_eq!(taken("t2m2@2/*").len(), 116, "what was published");
         assert_eq!(taken("t2m2@1/*").len(), 85, "what was published");

@@ -135,7 +135,7 @@ fn resolve(
                     Ok(loaded) => {
                         // If a file has the name of an embedded scene, the recording of that scene is used only if
                         // their contents are the same.
-                        let is_unchanged = library::scene(&name).is_some_and(|embedded| embedded == xml);
+                        let is_unchanged = library::find_scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = is_unchanged.then(|| library::recording(&name)).flatten();
                         let beyond = milestone.filter(|_| !is_unchanged).into_iter();
                         for unknown in beyond.flat_map(|milestone| loaded.scene.unknown_features(milestone)) {
@@ -175,7 +175,7 @@ fn find_embedded(pattern: &str) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
     let found: MatchingScenes = library::all_names()
         .filter(|name| library::matches_pattern(&glob, name))
-        .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
+        .filter_map(|name| Some((name.to_owned(), library::find_scene(name)?.to_vec())))
         .collect();
     if found.is_empty() {
         return Err(format!("no embedded scene matches asset:{pattern}; `fosssim-oracle scene list` lists them"));
@@ -197,7 +197,7 @@ mod tests {
             assert!(plan.max_points() > 0.0);
             assert_eq!(plan.rules, fosssim_judge::Rules::Fair, "{name}");
             assert_eq!(plan.name, format!("{} ({name})", assignment.definition().title));
-            let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has_scene(name);
+            let is_own = |name: &&str| library::find_assignment(name) == Some(assignment) && version.has_scene(name);
             let own: BTreeSet<&str> = library::all_names().filter(is_own).collect();
             let planned: BTreeSet<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
             assert_eq!(planned, own, "{name} grades what lies in its folder");

@@ -153,7 +153,7 @@ fn open_only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, Stri
     /// The maximum number of entries in a folder of a learning platform.
     const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
-    let mut names = opened.names().map_err(describe_error_at(folder))?;
+    let mut names = opened.list_names().map_err(describe_error_at(folder))?;
     names.retain(|name| !fosssim_intake::is_system_file(name));
     if names.len() > MAX_PLATFORM_ENTRIES || is_alone && names.len() > 1 {
         return Ok(None);

@@ -22,7 +22,7 @@ pub struct SceneFile {
 ///
 /// # Errors
 /// Fails if a folder can't be read.
-pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
+pub fn list_files(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
     let mut files = Vec::new();
     for first in list_folders(folder)? {
         gather(folder, &first, extension, &mut files)?;
@@ -64,11 +64,11 @@ mod tests {
             fs::create_dir_all(path.parent().expect("a folder")).expect("made");
             fs::write(path, "").expect("written");
         }
-        let files = list(folder.path(), ".xml").expect("readable");
+        let files = list_files(folder.path(), ".xml").expect("readable");
         let found: Vec<_> = files.iter().map(|file| (file.name.as_str(), file.stem.as_str())).collect();
         let expected = [("Balls/a", "Balls/a"), ("Balls/b", "t2m2/Balls/b"), ("x.xml/c", "t2m2/x.xml/c")];
         assert_eq!(found, expected);
         assert!(files.iter().all(|file| file.path == folder.path().join(format!("{}.xml", file.stem))));
-        assert!(list(&folder.path().join("none"), ".xml").is_err());
+        assert!(list_files(&folder.path().join("none"), ".xml").is_err());
     }
 }

@@ -182,7 +182,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);
     // A built-in scene belongs to the milestone that its folder names. For other scenes, the milestone follows from
     // their contents.
-    let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
+    let bundled = plan.scenes().filter_map(|task| library::find_assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::find_milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)
 }

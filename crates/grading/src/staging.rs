@@ -317,7 +317,7 @@ fn copy_folder(
             top.unwrap_or_default()
         )));
     }
-    for entry in from.names().map_err(|error| classify_error(name, error))? {
+    for entry in from.list_names().map_err(|error| classify_error(name, error))? {
         if fosssim_intake::is_system_file(&entry) {
             continue;
         }

@@ -22,7 +22,7 @@ pub struct SceneTask {
 impl SceneTask {
     /// Returns the scene's name in the form that commands accept. For embedded scenes it is `asset:Group/name`.
     pub fn address(&self) -> String {
-        let is_embedded = library::scene(&self.name).is_some_and(|embedded| embedded == self.xml);
+        let is_embedded = library::find_scene(&self.name).is_some_and(|embedded| embedded == self.xml);
         format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 

@@ -23,7 +23,7 @@ pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableR
 }
 
 fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
-    let mut names = folder.names().unwrap_or_default();
+    let mut names = folder.list_names().unwrap_or_default();
     names.retain(|name| !name.as_bytes().starts_with(b".") && !fosssim_intake::is_system_file(name));
     names.sort();
     if names.is_empty() {
@@ -52,7 +52,7 @@ fn find_below(
     depth: u32,
     budget: &mut u32,
 ) -> Option<std::path::PathBuf> {
-    let mut names = folder.names().ok()?;
+    let mut names = folder.list_names().ok()?;
     names.sort();
     let mut folders = Vec::new();
     for name in names {

@@ -344,21 +344,21 @@ impl ArchiveReader<'_> {
     fn unpack_file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
         let path = self.check_path(name)?;
         if path.iter().any(is_system_file) {
-            return self.copy(input, &mut io::sink()).map(drop);
+            return self.copy_file(input, &mut io::sink()).map(drop);
         }
         self.record_folders_above(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen_paths.insert(path.clone()) {
             return Err(ArchiveError::Duplicate(escape_name(name)));
         }
         match self.folder {
-            None => drop(self.copy(input, &mut io::sink())?),
+            None => drop(self.copy_file(input, &mut io::sink())?),
             Some(folder) => {
                 let place = folder.join(&path);
                 if let Some(parent) = place.parent() {
                     fs::create_dir_all(parent).map_err(ArchiveError::Folder)?;
                 }
                 let mut output = File::create_new(&place).map_err(ArchiveError::Folder)?;
-                let is_program = self.copy(input, &mut output)? == FileKind::Program;
+                let is_program = self.copy_file(input, &mut output)? == FileKind::Program;
                 let mode = if executable || is_program { 0o755 } else { 0o644 };
                 fs::set_permissions(&place, fs::Permissions::from_mode(mode)).map_err(ArchiveError::Folder)?;
             }
@@ -369,7 +369,7 @@ impl ArchiveReader<'_> {
 
     /// Copies a file, and returns its kind. The unpacked bytes are counted, because the sizes that an archive states
     /// may be wrong.
-    fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
+    fn copy_file(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const CHUNK_BYTES: u64 = 64 << 10;
         let mut chunk = Vec::new();
         input.by_ref().take(START_BYTES as u64).read_to_end(&mut chunk).map_err(describe_damage)?;

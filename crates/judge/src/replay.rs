@@ -257,7 +257,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.has_damage = damage.is_some();
         self.outcome.damage = damage;
         if let (false, Some(context), Some(judgement)) = (self.has_damage, self.step_rules.fair, &mut self.judging) {
-            judgement.add_initial(&fair::judge_initial(&context, &frame));
+            judgement.add_initial(&fair::judge_initial_record(&context, &frame));
         }
         self.state = frame.state;
         Ok(())

@@ -19,7 +19,7 @@ pub fn record_trace(scene: &Scene, student: Student) -> Vec<u8> {
 }
 
 /// Returns the outcome by both rule books, on one thread, because the tools try many programs at one time.
-pub fn judge(scene: &Scene, trace: &[u8]) -> Outcome {
+pub fn judge_trace(scene: &Scene, trace: &[u8]) -> Outcome {
     replay::judge(scene, trace, &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ())
 }
 
@@ -46,7 +46,7 @@ impl WatchedScene {
     /// Fails if one cannot be read, or there are none.
     pub fn from_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let files =
-            scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
+            scene_files::list_files(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
         ensure!(!files.is_empty(), "{}: no group of this folder contains a scene", folder.display());
         let watched = |SceneFile { name, path, .. }: SceneFile| -> anyhow::Result<Self> {
             let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;

@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
             Err(message) => print_error(message),
         },
         (None, Some(file)) => {
-            if let Ok(trace) = open(Path::new(file)) {
+            if let Ok(trace) = open_input(Path::new(file)) {
                 if let Some(pictures) = pictures
                     && let Err(message) = draw(&scene.scene, Path::new(file), pictures)
                 {
@@ -161,7 +161,7 @@ fn create_file(name: &Path) -> io::Result<File> {
 }
 
 /// Opens the trace. A directory can be opened, and is read as an empty file.
-fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
+fn open_input(name: &Path) -> io::Result<Box<dyn Read + Send>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() { Ok(Box::new(io::empty())) } else { with_timeout(file, &metadata) }
 }
@@ -210,7 +210,7 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(
     if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());
     }
-    let trace = open(name).map_err(|error| format!("cannot read {}: {error}\n", name.display()))?;
+    let trace = open_input(name).map_err(|error| format!("cannot read {}: {error}\n", name.display()))?;
     let layout = Layout::for_scene(scene);
     let mut reader = Reader::new(trace, layout);
     let mut frame = Frame::default();

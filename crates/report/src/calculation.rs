@@ -143,7 +143,7 @@ impl StepController for FirstSystem {
 fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { return None };
     let mut rows = Vec::new();
-    PenaltyTerms::for_scene(scene)?.visit(x, |pair, terms| {
+    PenaltyTerms::for_scene(scene)?.visit_pairs(x, |pair, terms| {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let other = match pair.kind {
             PairKind::ParticleParticle => scene.particles[second].radius,

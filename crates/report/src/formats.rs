@@ -105,7 +105,7 @@ impl Format {
     }
 
     /// Returns the names of the formats that `wanted` selects, as a list such as `text, json or csv`.
-    pub fn names(wanted: impl Fn(Self) -> bool) -> String {
+    pub fn join_names(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
         let names: Vec<&str> = wanted.map(Self::name).collect();
         match names.split_last() {

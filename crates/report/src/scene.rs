@@ -8,7 +8,7 @@ use crate::untrusted_text::to_one_line;
 use fosssim_model::scene::Scene;
 
 /// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
-pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
+pub fn list_scenes(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::count_columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - wrap::count_columns(name));

@@ -110,8 +110,8 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
 }
 
 /// Describes a program that was written for another milestone than the suite's.
-fn describe_milestone(other: Assignment) -> String {
-    format!("it looks like a program of {}, which is not the milestone of this suite", other.definition().title)
+fn describe_milestone(milestone: Assignment) -> String {
+    format!("it looks like a program of {}, which is not the milestone of this suite", milestone.definition().title)
 }
 
 /// Describes a submission that logs nothing in any scene. If the hints allow it, the text names the parts that are not

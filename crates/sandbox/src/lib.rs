@@ -75,8 +75,8 @@ pub enum ProcessorTimeScope {
 }
 
 /// Returns the processor time of these processes, in user mode and in the kernel together.
-pub fn processor_time(of: ProcessorTimeScope) -> std::time::Duration {
-    match of {
+pub fn processor_time(scope: ProcessorTimeScope) -> std::time::Duration {
+    match scope {
         ProcessorTimeScope::Thread => sys::processor_time(true),
         ProcessorTimeScope::Process => sys::processor_time(false),
         ProcessorTimeScope::Children => sys::children_usage().map_or(std::time::Duration::ZERO, |(time, _)| time),

@@ -3,18 +3,18 @@ use chrono::DateTime;
 use std::ops::RangeInclusive;
 
 /// Formats a time, given in milliseconds since 1970. Returns an empty text if the time is outside the calendar's range.
-fn format_with(milliseconds: i64, form: &str) -> String {
-    DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
+fn format_time(milliseconds: i64, pattern: &str) -> String {
+    DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(pattern).to_string()).unwrap_or_default()
 }
 
 /// Formats a time to the minute, such as `2026-11-22 08:45`.
 pub fn format_minute(milliseconds: i64) -> String {
-    format_with(milliseconds, "%Y-%m-%d %H:%M")
+    format_time(milliseconds, "%Y-%m-%d %H:%M")
 }
 
 /// Formats a time in ISO 8601, such as `2026-11-22T08:45:12.345+00:00`.
 pub fn format_iso(milliseconds: i64) -> String {
-    format_with(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
+    format_time(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
 /// The ranges of plausible times, in milliseconds since 1970. A number between the two ranges is probably in seconds.

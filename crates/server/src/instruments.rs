@@ -74,7 +74,7 @@ impl Instruments {
         page.0.register(Box::new(self.in_flight.clone()))?;
         page.0.register(Box::new(ProcessCollector::for_self()))?;
         page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
-        if let Some((free, size)) = storage.disk() {
+        if let Some((free, size)) = storage.disk_space() {
             page.write_number("disk_free_bytes", "Free space on the data folder's disk.", free as f64)?;
             page.write_number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
         }

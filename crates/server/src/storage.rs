@@ -93,7 +93,7 @@ impl Storage {
     }
 
     /// Returns the free bytes and the size of the disk with the data folder; `None` if the disk does not report them.
-    pub fn disk(&self) -> Option<(u64, u64)> {
+    pub fn disk_space(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
     }
@@ -105,7 +105,7 @@ impl Storage {
     /// Fails with status 507 if fewer bytes are free than the low-water mark requires.
     pub fn ensure_disk_space(&self) -> Result<(), Problem> {
         // If a disk does not report its free space, uploads are accepted.
-        if self.disk().is_some_and(|(free, _)| free < self.low_water) {
+        if self.disk_space().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are rejected: the disk is nearly full");
             return Err(Problem::no_room());
         }

@@ -27,7 +27,7 @@ pub fn handle_collisions(
     middle: &mut dyn FnMut(&State, &StepLog),
 ) -> Result<(), StepFailure> {
     let prediction = state.clone();
-    let resolved = impulses::apply(world, q_start, max_iterations, state, log)?;
+    let resolved = impulses::apply_rounds(world, q_start, max_iterations, state, log)?;
     middle(state, log);
     if !resolved && world.student.makes(Mistake::GeometricMovesPrediction) {
         *state = prediction;

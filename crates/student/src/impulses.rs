@@ -14,7 +14,7 @@ const MAX_IMPULSE: f64 = 0.5;
 
 /// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
 /// `state` is the prediction at the beginning, and the result at the end.
-pub fn apply(
+pub fn apply_rounds(
     world: &World,
     q_start: &[f64],
     max_iterations: i32,

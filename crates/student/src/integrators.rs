@@ -73,13 +73,13 @@ fn mishandle_fixed(world: &World, whole: Term, before: &State, state: &mut State
 
 /// Returns the rate at which velocities move positions, for a student who may use a different rate than the
 /// assignment's.
-fn position_rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
+fn position_rate(world: &World, term: Term, right_rate: &[f64], other_rate: &[f64]) -> Vec<f64> {
     match () {
-        () if world.student.makes_slip(term, Slip::OtherVelocity) => other.to_vec(),
+        () if world.student.makes_slip(term, Slip::OtherVelocity) => other_rate.to_vec(),
         () if world.student.makes_slip(term, Slip::MeanVelocity) => {
-            right.iter().zip(other).map(|(one, other)| (one + other) / 2.0).collect()
+            right_rate.iter().zip(other_rate).map(|(one, other)| (one + other) / 2.0).collect()
         }
-        () => right.to_vec(),
+        () => right_rate.to_vec(),
     }
 }
 

@@ -29,7 +29,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
     let mut force = PenaltySum { world, layer, x, g };
     if !has_own_pairs {
         return PenaltyPairs::new(&world.scene, layer.h, layer.detection)
-            .visit(x, |pair| force.add(pair.kind, (pair.first as usize, pair.second as usize)));
+            .visit_pairs(x, |pair| force.add(pair.kind, (pair.first as usize, pair.second as usize)));
     }
     let near = NearPairSearch::new(world, layer.h, x, v);
     let mut visit = |kind: PairKind, (one, other): (usize, usize)| {
@@ -48,7 +48,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
         }
     } else {
         PenaltyPairs::new(&world.scene, layer.h, layer.detection)
-            .visit(x, |pair| visit(pair.kind, (pair.first as usize, pair.second as usize)));
+            .visit_pairs(x, |pair| visit(pair.kind, (pair.first as usize, pair.second as usize)));
     }
 }
 

@@ -110,7 +110,7 @@ pub fn skip(need: Need, why: impl fmt::Display) {
     }
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     eprintln!("skipped {test}: {why}");
-    let Some(list) = list() else { return };
+    let Some(list) = skip_list() else { return };
     // Each line is one write, because the tests of one run are threads and processes.
     let line = format!("{need}\t{test}\t{why}\n");
     let file = fs::OpenOptions::new().create(true).append(true).open(list);
@@ -133,7 +133,7 @@ fn check_allowed(need: Need, required: &str) -> Result<(), String> {
 
 /// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
 /// have a list only if the variable is set.
-pub fn list() -> Option<PathBuf> {
+pub fn skip_list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
         return Some(list.into());
     }

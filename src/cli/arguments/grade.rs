@@ -11,7 +11,7 @@ use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// Returns the help text of `--format`, for the formats that the command accepts.
 fn format_help(takes: impl Fn(Format) -> bool) -> String {
-    format!("A report: {}; with =FILE, written to a file", Format::names(takes))
+    format!("A report: {}; with =FILE, written to a file", Format::join_names(takes))
 }
 
 /// Returns the names of the built-in suites as a list for a help text.

@@ -31,7 +31,7 @@ impl FurtherCommands<'_> {
             lines.push(format!("$ {} --scene {}{hints}", self.grade_command(submission), quote(&scene.scene)));
         }
         let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
-        if let (Some(trace), Some(name)) = (kept, self.scene(&scene.scene)) {
+        if let (Some(trace), Some(name)) = (kept, self.scene_argument(&scene.scene)) {
             lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
@@ -49,9 +49,9 @@ impl FurtherCommands<'_> {
     }
 
     /// Returns the name of a scene in the form that `check` accepts; `None` if the scene cannot be named.
-    fn scene(&self, name: &str) -> Option<String> {
+    fn scene_argument(&self, name: &str) -> Option<String> {
         let task = self.plan.scenes().find(|task| task.name == name)?;
-        if library::scene(name).is_some_and(|embedded| embedded == task.xml) {
+        if library::find_scene(name).is_some_and(|embedded| embedded == task.xml) {
             return Some(format!("asset:{name}"));
         }
         let file = Path::new(&self.arguments.suite).with_file_name(format!("{name}.xml"));

@@ -48,7 +48,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
         for name in COPIED_FOLDERS {
             let place = FilePlace::new(folder, name);
             match place.open_folder() {
-                Ok(from) => copy(&from, &FilePlace::new(&output, name), MAX_DEPTH)?,
+                Ok(from) => copy_folder(&from, &FilePlace::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
                     return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
@@ -179,11 +179,11 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
 }
 
 /// Copies the files of a folder. Links are followed neither in the folder nor at the destination.
-fn copy(from: &Folder, to: &FilePlace, depth: usize) -> Result<()> {
-    for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
+fn copy_folder(from: &Folder, to: &FilePlace, depth: usize) -> Result<()> {
+    for name in from.list_names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
         let (source, target) = (from.given_path().join(&name), to.join(&name));
         match from.entry(&name) {
-            Ok(FolderEntry::Folder(inner)) if depth > 0 => copy(&inner, &target, depth - 1)?,
+            Ok(FolderEntry::Folder(inner)) if depth > 0 => copy_folder(&inner, &target, depth - 1)?,
             Ok(FolderEntry::File(file)) => {
                 let copy = || copy_file(file, &target);
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;

@@ -60,7 +60,7 @@ impl Pages {
     /// Removes the cards of earlier gradings.
     pub(super) fn remove_cards(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
-        for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
+        for name in self.cards.list_names().unwrap_or_default().iter().filter(|name| is_card(name)) {
             // If a card can't be removed, it only uses space.
             drop(self.cards.join(name).remove());
         }

@@ -42,15 +42,15 @@ struct RecordedScene {
 /// Returns the embedded scenes. Their recordings are found by name.
 fn list_bundled() -> Vec<RecordedScene> {
     let input = |name: &str| {
-        Some(RecordedScene { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() })
+        Some(RecordedScene { name: name.to_owned(), stem: name.to_owned(), xml: library::find_scene(name)?.into() })
     };
-    library::names().filter_map(input).collect()
+    library::scene_names().filter_map(input).collect()
 }
 
 /// Returns the scenes of a folder, in alphabetical order.
 fn find_scenes(folder: &Path) -> Result<Vec<RecordedScene>> {
     let shown = folder.display();
-    let files = scene_files::list(folder, ".xml").with_context(|| {
+    let files = scene_files::list_files(folder, ".xml").with_context(|| {
         format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
     })?;
     if files.is_empty() {
@@ -87,7 +87,7 @@ impl EarlierRecordings<'_> {
     fn stems(&self) -> Vec<String> {
         let Some(folder) = self.0 else { return library::recordings().map(str::to_owned).collect() };
         // If the folder does not exist, it has no recordings.
-        let files = scene_files::list(folder, ".bin.zst").unwrap_or_default();
+        let files = scene_files::list_files(folder, ".bin.zst").unwrap_or_default();
         files.into_iter().map(|file| file.stem).collect()
     }
 }
@@ -105,7 +105,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
         }
     }
     let before = old.file("manifest.txt")?.unwrap_or_default();
-    text += &recording::render_diff("manifest.txt", &String::from_utf8_lossy(&before), &manifest(recordings));
+    text += &recording::render_diff("manifest.txt", &String::from_utf8_lossy(&before), &render_manifest(recordings));
     if text.is_empty() {
         let steps = recordings.iter().map(|(_, recording)| u64::from(recording.steps)).sum();
         let (recordings, steps) = (format_count(recordings.len() as u64, "recording"), format_count(steps, "step"));
@@ -138,14 +138,14 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
             }
         }
     }
-    replace(&FilePlace::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
+    replace(&FilePlace::new(folder, "manifest.txt"), render_manifest(recordings).as_bytes())?;
     let (recordings, bytes) = (format_count(recordings.len() as u64, "recording"), format_count(bytes, "byte"));
     console::print(format!("{recordings}, {bytes}, in {}\n", folder.display()))?;
     Ok(exit::ACCEPTED)
 }
 
 /// Returns the text of `manifest.txt`: a line for each recording with its name, steps, bytes and digest.
-fn manifest(recordings: &[(String, Recording)]) -> String {
+fn render_manifest(recordings: &[(String, Recording)]) -> String {
     recording::render_manifest(recordings.iter().map(|(_, recording)| recording))
 }
 

@@ -29,22 +29,22 @@ fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     }
     let mut scenes = Vec::new();
     for name in names {
-        let xml = library::scene(name).context("a scene that was just listed")?;
+        let xml = library::find_scene(name).context("a scene that was just listed")?;
         let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not valid"))?;
         scenes.push((name, loaded.scene));
     }
-    console::report(&report::list(&scenes, console::style()))
+    console::report(&report::list_scenes(&scenes, console::style()))
 }
 
 fn show(name: &str) -> Result<()> {
     let name = name.strip_prefix("asset:").unwrap_or(name);
     let name = name.strip_suffix(".xml").unwrap_or(name);
-    if let Some(xml) = library::scene(name) {
+    if let Some(xml) = library::find_scene(name) {
         return console::print(xml);
     }
     // A name without its group is accepted if it is unique.
     let matching: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
-    match (matching[..].first().and_then(|only| library::scene(only)), matching.len()) {
+    match (matching[..].first().and_then(|only| library::find_scene(only)), matching.len()) {
         (Some(xml), 1) => console::print(xml),
         _ => bail!("there is no built-in scene {name}; `fosssim-oracle scene list` lists all"),
     }
@@ -54,7 +54,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     let names = matching_names(&arguments.patterns)?;
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {
-        let xml = library::scene(name).context("a scene that was just listed")?;
+        let xml = library::find_scene(name).context("a scene that was just listed")?;
         let place = FilePlace::new(&arguments.output, format!("{name}.xml"));
         match has_contents(&place, xml) {
             Some(true) => kept += 1,

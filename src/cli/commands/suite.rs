@@ -1,6 +1,6 @@
 //! The command `suite`, which writes, checks and explains suites.
 use super::{
-    suite_report::{SuiteContents, UndecidedScene, list, list_json, render_text},
+    suite_report::{SuiteContents, UndecidedScene, list_json, list_suites, render_text},
     visible_mistakes::find_visible_mistakes,
 };
 use crate::{
@@ -36,7 +36,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
         }
         SuiteCommand::List(SuiteListArguments { format }) => {
             let suites = list_built_in()?;
-            console::show(*format, || list(&suites, console::style()), || list_json(&suites))
+            console::show(*format, || list_suites(&suites, console::style()), || list_json(&suites))
         }
     }
 }

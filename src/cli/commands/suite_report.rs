@@ -63,7 +63,7 @@ pub(super) fn render_text(plan: &Plan, contents: &SuiteContents, undecided: &[Un
 const SCHEMA: u32 = 2;
 
 /// Renders the list of built-in suites, one per line.
-pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
+pub(super) fn list_suites(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
         let size = style.paint(TextStyle::Faint, &format!("({})", describe_size(plan)));

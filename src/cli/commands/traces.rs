@@ -89,7 +89,7 @@ const MAX_NAMED: usize = 5;
 /// Describes the traces in a folder and its subfolders that do not belong to any scene; `None` if there are none.
 fn describe_other_traces(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
-        let names = folder.names().unwrap_or_default();
+        let names = folder.list_names().unwrap_or_default();
         names.iter().map(|name| name.to_string_lossy().into_owned()).collect()
     };
     let mut found = texts(folder);

@@ -33,7 +33,7 @@ pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
     }
     let (bytes, identity) = match asset_name(name) {
         Some(asset) => {
-            let scene = library::scene(asset).with_context(|| describe_missing_asset("scene", asset))?;
+            let scene = library::find_scene(asset).with_context(|| describe_missing_asset("scene", asset))?;
             (scene.to_vec(), None)
         }
         None => read_scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,

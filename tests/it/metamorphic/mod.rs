@@ -21,8 +21,9 @@ use proptest::{
 
 /// Returns all built-in scenes by name.
 fn built_in() -> Vec<(&'static str, Scene)> {
-    let scene = |name| original::read(library::scene(name).expect("a built-in scene")).expect("a sound scene").scene;
-    library::names().map(|name| (name, scene(name))).collect()
+    let scene =
+        |name| original::read(library::find_scene(name).expect("a built-in scene")).expect("a sound scene").scene;
+    library::scene_names().map(|name| (name, scene(name))).collect()
 }
 
 /// Runs `test` on `cases` values, the same ones every time.

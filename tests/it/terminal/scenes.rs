@@ -37,7 +37,7 @@ fn a_scene_is_shown_as_it_is_and_can_be_judged_with() {
         "t2m2/HolisticTests/balls-in-a-box",
     ] {
         let run = workspace.run(["scene", "show", word]);
-        assert_eq!((run.code, run.stdout.as_slice()), (Some(0), library::scene(name).expect("a scene")), "{word}");
+        assert_eq!((run.code, run.stdout.as_slice()), (Some(0), library::find_scene(name).expect("a scene")), "{word}");
     }
     let run = workspace.run(["scene", "show", "HolisticTests/balls"]);
     assert_eq!(run.code, Some(2));
@@ -52,7 +52,7 @@ fn scenes_are_exported_and_what_is_there_is_not_harmed() {
     let exported: Vec<_> = library::all_names().filter(|name| name.starts_with("HolisticTests/")).collect();
     assert!(run.out().starts_with(&format!("{} scenes written to scenes", exported.len())), "{}", run.out());
     for name in &exported {
-        assert_eq!(workspace.read(format!("scenes/{name}.xml")), library::scene(name).expect("a scene"));
+        assert_eq!(workspace.read(format!("scenes/{name}.xml")), library::find_scene(name).expect("a scene"));
     }
     let again = workspace.run(["scene", "export", "HolisticTests/*", "--output", "scenes"]);
     assert!(again.out().contains("there already"), "{}", again.shown());
@@ -68,7 +68,7 @@ fn scenes_are_exported_and_what_is_there_is_not_harmed() {
     );
     let forced = workspace.run(["scene", "export", "--output", "scenes", "--force", "--quiet"]);
     assert_eq!((forced.code, forced.out()), (Some(0), String::new()), "{}", forced.shown());
-    assert_eq!(workspace.read(&mine), library::scene(exported[0]).expect("a scene"));
+    assert_eq!(workspace.read(&mine), library::find_scene(exported[0]).expect("a scene"));
     let run = workspace.run(["scene", "export", "NoSuchTests/*", "--output", "none"]);
     assert_eq!(run.code, Some(2));
     assert!(run.err().contains("NoSuchTests/* matches no scene; the scenes are "), "{}", run.err());

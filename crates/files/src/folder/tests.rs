@@ -38,7 +38,7 @@ fn nothing_beneath_a_folder_is_reached_by_a_link_or_waited_for() {
             let problem = folder.read(OsStr::new(name), 3).unwrap_err().to_string();
             assert!(problem.contains(expected), "{name}: {problem}");
         }
-        let mut names = folder.names().unwrap();
+        let mut names = folder.list_names().unwrap();
         names.sort();
         assert_eq!(names, ["a", "fifo", "link", "socket", "sparse", "way"]);
         assert!(folder.create_folder(OsStr::new("way")).unwrap_err().to_string().contains("a link"));

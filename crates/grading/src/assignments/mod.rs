@@ -132,7 +132,7 @@ mod tests {
             let listed: Vec<&str> = first.scenes.expect("a list").lines().collect();
             assert_eq!(listed.len(), scenes, "{name}");
             for scene in listed {
-                assert_eq!(library::assignment(scene), Some(assignment), "{scene}");
+                assert_eq!(library::find_assignment(scene), Some(assignment), "{scene}");
             }
         }
     }

@@ -35,8 +35,8 @@ fn earlier_assignments_contain_nothing_of_this() {
 
 #[test]
 fn nothing_is_seen_that_cannot_be() {
-    for name in library::names() {
-        let scene = read(name, library::scene(name).expect("a scene")).expect("sound").scene;
+    for name in library::scene_names() {
+        let scene = read(name, library::find_scene(name).expect("a scene")).expect("sound").scene;
         let seen = Coverage::for_scene(&scene).expect("a run").pairings;
         let wrong: Vec<String> =
             seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.describe())).collect();

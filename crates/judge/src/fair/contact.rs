@@ -199,8 +199,8 @@ impl<'a> Tolerances<'a> {
         self.add_sensitivity(self.velocity, particle, |known| &known.velocities)
     }
 
-    fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
-        let sensitivity = self.sensitivity.map_or(0.0, |sensitivity| length(vector_at(of(sensitivity), particle)));
+    fn add_sensitivity(&self, floor: f64, particle: usize, select: fn(&State) -> &Vec<f64>) -> f64 {
+        let sensitivity = self.sensitivity.map_or(0.0, |sensitivity| length(vector_at(select(sensitivity), particle)));
         floor + FAIR_SENSITIVITY_FACTOR * sensitivity
     }
 }

@@ -60,6 +60,6 @@ pub use fosssim_findings::{
 pub(super) use judgement::JudgementBuilder;
 pub(super) use probe::{PERTURBED_RUNS, perturb};
 pub(super) use reach::ExtraordinarySteps;
-pub(super) use step::{judge, judge_initial};
+pub(super) use step::{judge_initial_record, judge_records};
 pub(super) use step_judgement::StepJudgement;
 pub use unapplied_pairs::count_applications;

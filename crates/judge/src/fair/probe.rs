@@ -46,10 +46,10 @@ pub(super) fn probe(
     let still = State { positions: zeros.clone(), velocities: zeros };
     let mut sensitivity =
         Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped_decisions: Vec::new() };
-    let Some(base) = run(context, simulation, records, decisions, 0) else { return sensitivity };
+    let Some(base) = run_probe(context, simulation, records, decisions, 0) else { return sensitivity };
     sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
     for seed in 1..=PERTURBED_RUNS {
-        let Some(other) = run(context, simulation, records, decisions, seed) else { continue };
+        let Some(other) = run_probe(context, simulation, records, decisions, seed) else { continue };
         widen_state(&mut sensitivity.mid, &base.mid, &other.mid);
         widen_state(&mut sensitivity.end, &base.end, &other.end);
         for ((own, base), other) in sensitivity.passes.iter_mut().zip(&base.passes).zip(&other.passes) {
@@ -88,7 +88,7 @@ struct ProbeRun {
     hits: Vec<bool>,
 }
 
-fn run(
+fn run_probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
     records: &Records<'_>,

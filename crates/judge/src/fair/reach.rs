@@ -6,7 +6,7 @@
 use super::{
     context::{Context, Records},
     ordinary_range::OrdinaryRange,
-    step::judge,
+    step::judge_records,
     step_judgement::StepJudgement,
 };
 use crate::finding::FindingDetail;
@@ -66,7 +66,7 @@ impl<'a> ExtraordinarySteps<'a> {
                     self.second_simulation.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
                 let begin = simulation.work();
                 simulation.limit_work(begin.saturating_add(max_work));
-                let judged = judge(context, simulation, records, identical);
+                let judged = judge_records(context, simulation, records, identical);
                 (judged, simulation.work() - begin)
             }
         }

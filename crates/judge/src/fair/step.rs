@@ -21,7 +21,7 @@ const MAX_FLIPS: usize = 4;
 /// Judges a step. `identical` states that the states, impulses and polynomials of both records are identical to the
 /// reference's; then only the rest of the records is checked. If this run has no result although the reference has one,
 /// the trace's log causes an endless search.
-pub(crate) fn judge(
+pub(crate) fn judge_records(
     context: &Context<'_>,
     simulation: &mut Simulation,
     records: Records<'_>,
@@ -38,7 +38,7 @@ pub(crate) fn judge(
 }
 
 /// Compares the first record with the scene.
-pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
+pub(crate) fn judge_initial_record(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
     let mut judged = StepJudgement::default();
     let state = State::for_scene(context.scene);
     contact::compare_states(&mut judged, 0, &state, &frame.state, &Tolerances::from_context(context, &state, None));

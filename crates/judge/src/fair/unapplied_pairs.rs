@@ -63,7 +63,7 @@ pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &S
 
 /// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with the same
 /// faults; `None` if nothing is explained.
-pub(super) fn explain(
+pub(super) fn explain_velocities(
     context: &Context<'_>,
     tolerances: &Tolerances<'_>,
     before: &State,
@@ -127,7 +127,7 @@ impl NearPairs {
         let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
         let mut near_pairs: Vec<NearPair> = Vec::new();
         let mut sums = vec![Vec2::zeros(); particles];
-        terms.visit(&before.positions, |pair, forces| {
+        terms.visit_pairs(&before.positions, |pair, forces| {
             let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
             for &(particle, force) in forces.iter().filter(|(particle, _)| !scene.particles[*particle].fixed) {
                 let change = (h / scene.particles[particle].mass) * force;
@@ -181,7 +181,7 @@ fn contest_layer(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     };
     let (all_pairs, mut due) = ((thickness > 0.0).then(|| between_all(thickness))?, BTreeSet::new());
     for (scene, is_bare) in [(&all_pairs, false), (&between_all(0.0), true)] {
-        PenaltyTerms::for_scene(scene)?.visit(x, |pair, _| {
+        PenaltyTerms::for_scene(scene)?.visit_pairs(x, |pair, _| {
             if is_bare || pair.kind == PairKind::ParticleHalfPlane {
                 due.insert(pair);
             }

@@ -196,7 +196,7 @@ fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>)
         *is_extraordinary = !records.states().all(|state| context.ordinary_range.contains(state));
         *is_deferred = *is_extraordinary && !records.starts_from_ordinary_states(context);
         if !*is_deferred {
-            *judged = fair::judge(context, &mut worker.simulation, records, result.is_identical);
+            *judged = fair::judge_records(context, &mut worker.simulation, records, result.is_identical);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! explanation reports a mistake of a correct variant.
 #![forbid(unsafe_code)]
 use anyhow::Context;
-use fosssim_lab::runs::{WatchedScene, judge, record_trace};
+use fosssim_lab::runs::{WatchedScene, judge_trace, record_trace};
 use fosssim_oracle::{
     diagnose::{Explanation, explain_together, find_known},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -42,7 +42,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let scenes = WatchedScene::from_folder(&folder)?;
     let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.id.contains(&part)).collect();
     let results: Vec<Vec<ExplainedTrace>> =
-        rows.par_iter().map(|row| scenes.iter().map(|scene| explain(scene, row)).collect()).collect();
+        rows.par_iter().map(|row| scenes.iter().map(|scene| explain_row(scene, row)).collect()).collect();
     let mut accused = false;
     for (row, outcomes) in rows.iter().zip(&results) {
         let is_wrong = row.kind == RowKind::Wrong;
@@ -124,7 +124,7 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     confused.iter().for_each(|line| println!("{line}"));
 }
 
-fn explain(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
+fn explain_row(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
     let trace = record_trace(&watched.scene, Student::new(Some(row.mistake)));
     if trace == watched.right {
         return (Outcome::Same, Duration::ZERO, Vec::new());
@@ -133,7 +133,7 @@ fn explain(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
     let explanations = find_known(&watched.scene, &trace[..]);
     let time = begin.elapsed();
     let outcome = match explanations.first().cloned() {
-        None => match judge(&watched.scene, &trace).parity.findings.wrong_steps {
+        None => match judge_trace(&watched.scene, &trace).parity.findings.wrong_steps {
             0 => Outcome::Unseen,
             steps => Outcome::Nothing(steps),
         },

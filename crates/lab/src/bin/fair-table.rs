@@ -20,7 +20,7 @@ fn main() -> anyhow::Result<()> {
     let (corpus, all) = (Path::new(&corpus), arguments.next().is_some());
     let rows = corpus::read_rows(corpus)?;
     let judged: Vec<Option<(Overall, Judgement)>> =
-        rows.par_iter().map(|row| judge(corpus, row)).collect::<anyhow::Result<_>>()?;
+        rows.par_iter().map(|row| judge_row(corpus, row)).collect::<anyhow::Result<_>>()?;
     let mut summary: BTreeMap<(&str, String, String), u32> = BTreeMap::new();
     for (row, judged) in rows.iter().zip(&judged) {
         let Some((overall, fair)) = judged else { continue };
@@ -46,9 +46,9 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn judge(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgement)>> {
+fn judge_row(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgement)>> {
     let Some((scene, trace)) = row.read(corpus)? else { return Ok(None) };
-    let outcome = runs::judge(&scene, &trace);
+    let outcome = runs::judge_trace(&scene, &trace);
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 

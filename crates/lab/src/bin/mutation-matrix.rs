@@ -6,7 +6,7 @@
 //! catches every catchable mistake. It exits with status 1 if the fair rules miss a mistake or reject a correct
 //! variant, or if a mistake changes no trace, so that no rule book could find it.
 #![forbid(unsafe_code)]
-use fosssim_lab::runs::{WatchedScene, is_accepted, judge, record_trace};
+use fosssim_lab::runs::{WatchedScene, is_accepted, judge_trace, record_trace};
 use fosssim_oracle::{
     judge::{FindingKind, Outcome, Overall},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -111,7 +111,7 @@ fn compute_cell(case: &WatchedScene, row: &Row) -> MatrixCell {
     if trace == case.right {
         return [Answer::Same; RULE_BOOKS.len()];
     }
-    let outcome = judge(&case.scene, &trace);
+    let outcome = judge_trace(&case.scene, &trace);
     [parity_answer(&outcome), fair_answer(&outcome)]
 }
 

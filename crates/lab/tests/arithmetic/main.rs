@@ -5,7 +5,7 @@
 
 mod right;
 
-use fosssim_lab::runs::{is_accepted, judge};
+use fosssim_lab::runs::{is_accepted, judge_trace};
 use fosssim_oracle::{
     assignments::{Assignment, ImpulseList},
     judge::fair::FairVerdict,
@@ -119,7 +119,7 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
         let mut single = SingleSteps::new(scene);
         let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.visit(state, contacts)) else { continue };
         tally.room = [tally.room, single.room].into_iter().flatten().min();
-        let outcome = judge(scene, &trace);
+        let outcome = judge_trace(scene, &trace);
         let is_accepted = is_accepted(&outcome);
         let Some(fair) = outcome.fair else { continue };
         tally.programs += 1;
@@ -182,7 +182,7 @@ impl<'a> SingleSteps<'a> {
             let mut trace = Vec::new();
             right::record(&self.one, &before, &[], &mut trace);
             right::record(&self.one, &state, contacts, &mut trace);
-            if !is_accepted(&judge(&self.one, &trace)) {
+            if !is_accepted(&judge_trace(&self.one, &trace)) {
                 self.room = Some(factor);
             }
             factor *= 2;
@@ -212,15 +212,15 @@ fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally
                 let value = f64::from_le_bytes(number.try_into().unwrap_or_default());
                 number.copy_from_slice(&(value + noise).to_le_bytes());
             }
-            *refused += u64::from(!is_accepted(&judge(scene, &damaged)));
+            *refused += u64::from(!is_accepted(&judge_trace(scene, &damaged)));
         }
     }
 }
 
 fn scenes(corpus: Option<&Path>) -> Vec<(String, Scene)> {
-    let own = library::names().filter_map(|name| {
-        let milestone = library::assignment(name).filter(|assignment| *assignment != Assignment::T2M2)?;
-        Some((format!("{}/{name}", milestone.key()), library::scene(name)?.to_vec()))
+    let own = library::scene_names().filter_map(|name| {
+        let milestone = library::find_assignment(name).filter(|assignment| *assignment != Assignment::T2M2)?;
+        Some((format!("{}/{name}", milestone.key()), library::find_scene(name)?.to_vec()))
     });
     let mut all: Vec<(String, Vec<u8>)> = own.collect();
     for folder in ["scenes/t1m1", "scenes/t1m2", "scenes/t1m3", "scenes/t2m1", "t2m3"] {
@@ -266,16 +266,17 @@ fn springs(masses: [f64; 3]) -> Scene {
 /// Returns the verdict on what a program writes of a scene.
 fn verdict(scene: &Scene, arithmetic: right::Arithmetic) -> FairVerdict {
     let trace = arithmetic.trace(scene, |_, _| ()).unwrap_or_else(|_| panic!("{} ends early", arithmetic.name));
-    judge(scene, &trace).fair.expect("the fair rules were asked").verdict
+    judge_trace(scene, &trace).fair.expect("the fair rules were asked").verdict
 }
 
 #[test]
 fn whatever_solves_the_system_of_an_implicit_step_is_right() {
     // Where masses differ, solvers that are exact beside the largest entry are not so beside each row's.
     let mut scenes = vec![springs([1e7, 1.0, 4.0]), springs([1e6, 1.0, 1e2])];
-    let of_milestone = library::names().filter(|name| library::assignment(name) == Some(Assignment::T1M3));
+    let of_milestone = library::scene_names().filter(|name| library::find_assignment(name) == Some(Assignment::T1M3));
     scenes.extend(
-        of_milestone.map(|name| scene::read(name, library::scene(name).expect("its text")).expect("a scene").scene),
+        of_milestone
+            .map(|name| scene::read(name, library::find_scene(name).expect("its text")).expect("a scene").scene),
     );
     assert!(scenes.len() > 5);
     for (number, scene) in scenes.iter().enumerate() {

@@ -47,13 +47,13 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
     // In the contest, students write only the search for nearby pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
-    let pairs = if is_contest { near_pairs::explain(&mut reference, scene, &scan) } else { None };
+    let pairs = if is_contest { near_pairs::explain_pairs(&mut reference, scene, &scan) } else { None };
     let KnownMistakes { explanations: mut known, unexplained: open, contradicted_keys: denies } =
         explain_kept_steps(&mut reference, scene, scan);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
-    let mut polynomials = polynomial::explain(&detections);
+    let mut polynomials = polynomial::explain_polynomials(&detections);
     if known.iter().any(|explanation| find(&explanation.key).is_some_and(is_empty_stage)) {
         polynomials.retain(|explanation| !explanation.reports_missing_polynomials());
     }

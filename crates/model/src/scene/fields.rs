@@ -146,20 +146,20 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Returns a required index of an existing object.
-    pub(super) fn index(&mut self, name: &str, of: ObjectCount) -> Option<usize> {
+    pub(super) fn index(&mut self, name: &str, objects: ObjectCount) -> Option<usize> {
         let written = self.integer(name)?;
         let index = usize::try_from(written).ok();
-        if index.is_some_and(|index| index < of.count) {
+        if index.is_some_and(|index| index < objects.count) {
             return index;
         }
-        if of.is_certain || index.is_none() {
+        if objects.is_certain || index.is_none() {
             self.report_problem(Severity::Error, name, || {
-                let help = match of.count {
-                    0 => format!("there is no {}", of.noun),
+                let help = match objects.count {
+                    0 => format!("there is no {}", objects.noun),
                     1 => "must be 0; numbering starts at 0".to_owned(),
                     count => format!("must be from 0 to {}; numbering starts at 0", count - 1),
                 };
-                (format!("is {written}, but the scene has no such {}", of.noun), help)
+                (format!("is {written}, but the scene has no such {}", objects.noun), help)
             });
         }
         None

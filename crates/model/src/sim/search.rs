@@ -38,15 +38,15 @@ impl SearchCounts {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }
 
-    /// Combines the counts of two objects with the function `made`.
-    fn combine(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
+    /// Combines the counts of two objects with the function `operation`.
+    fn combine(self, other: Self, operation: fn(u64, u64) -> u64) -> Self {
         Self {
-            calls: made(self.calls, other.calls),
-            searched: made(self.searched, other.searched),
-            excluded: made(self.excluded, other.excluded),
-            disagreements: made(self.disagreements, other.disagreements),
-            steps: made(self.steps, other.steps),
-            subnormal: made(self.subnormal, other.subnormal),
+            calls: operation(self.calls, other.calls),
+            searched: operation(self.searched, other.searched),
+            excluded: operation(self.excluded, other.excluded),
+            disagreements: operation(self.disagreements, other.disagreements),
+            steps: operation(self.steps, other.steps),
+            subnormal: operation(self.subnormal, other.subnormal),
         }
     }
 }

@@ -52,7 +52,7 @@ pub(crate) fn search(problem: &Problem) -> SearchOutcome {
     for (index, polynomial) in problem.polynomials().iter().enumerate() {
         controls.push(BernsteinForm { index, ..polynomial.compute_bernstein() });
     }
-    let reached = walk.visit(0.0, 1.0, &controls, 0);
+    let reached = walk.visit_piece(0.0, 1.0, &controls, 0);
     let answer = match (reached, walk.first_open) {
         (Some(time), _) => Answer::Reached(time),
         (None, None) => Answer::Never,
@@ -105,7 +105,7 @@ struct PieceWalk<'a> {
 impl PieceWalk<'_> {
     /// Visits the piece from `lo` to `hi`. Returns the first time at which all polynomials were found to be positive,
     /// if there is one.
-    fn visit(&mut self, lo: f64, hi: f64, controls: &BernsteinForms, depth: u32) -> Option<f64> {
+    fn visit_piece(&mut self, lo: f64, hi: f64, controls: &BernsteinForms, depth: u32) -> Option<f64> {
         self.pieces += 1;
         let mut open = BernsteinForms::new();
         let mut improves = false;
@@ -149,7 +149,7 @@ impl PieceWalk<'_> {
             left.push(first);
             right.push(second);
         }
-        self.visit(lo, middle, &left, depth + 1).or_else(|| self.visit(middle, hi, &right, depth + 1))
+        self.visit_piece(lo, middle, &left, depth + 1).or_else(|| self.visit_piece(middle, hi, &right, depth + 1))
     }
 
     /// Brackets the only zero of a polynomial that rises through it between two times, where all others are positive.

@@ -90,7 +90,7 @@ impl ClassContent<'_> {
     }
 
     /// Returns the names of submissions as text, to be copied into a letter.
-    fn names(&self, members: &[usize]) -> String {
+    fn join_names(&self, members: &[usize]) -> String {
         let names = members.iter().map(|&number| to_one_line(&self.class.grades[number].submission));
         names.collect::<Vec<_>>().join(", ")
     }
@@ -153,7 +153,7 @@ impl ClassContent<'_> {
     /// Returns groups of submissions with the same program.
     fn same_programs(&self) -> Vec<Cluster<'_>> {
         let cluster = |members: Vec<usize>| {
-            let heading = shorten(&self.names(&members));
+            let heading = shorten(&self.join_names(&members));
             Cluster { heading, members, ..Cluster::default() }
         };
         group_same_programs(self.class.grades).into_iter().map(cluster).collect()

@@ -307,7 +307,7 @@ impl OpenedFile {
             let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
             match fits && !mounts::forbids_execution(program.as_fd()) {
                 true => Ok(Self { file: program.into(), is_copy: false }),
-                false => Self::copy(&program, max_bytes),
+                false => Self::copy_into_memory(&program, max_bytes),
             }
         };
         open().map_err(|error| match error.kind() {
@@ -317,7 +317,7 @@ impl OpenedFile {
     }
 
     /// Copies the program into memory. Holes in the file remain holes.
-    fn copy(program: &File, max_bytes: u64) -> io::Result<Self> {
+    fn copy_into_memory(program: &File, max_bytes: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
         memory_folder::copy_blocks(program, &mut copy, max_bytes)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;

@@ -217,7 +217,7 @@ fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(memory_folder::mount_options(order)).map_err(io::Error::other)?;
     mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.allows_tools)?;
-    memory_folder::copy(from, folder)
+    memory_folder::copy_contents(from, folder)
 }
 
 fn to_c_string(path: &Path) -> Result<CString, Failure> {

@@ -205,7 +205,7 @@ impl GroupPart {
     }
 
     fn try_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
-        let (path, folder) = claim(place)?;
+        let (path, folder) = create_locked_group(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
         // A group is useful only if it can be entered and, in version 2, can be killed.
         if kind == HierarchyKind::Unified {
@@ -262,7 +262,7 @@ fn find_value(text: &str, key: &str) -> Option<u64> {
 /// # Errors
 ///
 /// Fails with `NotFound` if the group was removed before it was locked.
-fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
+fn create_locked_group(place: &Path) -> io::Result<(PathBuf, File)> {
     // In another process namespace, a process may have the same number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
     let path = place.join(format!("{GROUP_PREFIX}{}-{now}", std::process::id()));
@@ -392,7 +392,7 @@ mod tests {
                 });
             }
             for _ in 0..CLAIMS {
-                match claim(place.path()) {
+                match create_locked_group(place.path()) {
                     Ok((path, folder)) => held.push((path, folder)),
                     Err(error) => assert_eq!(error.kind(), io::ErrorKind::NotFound, "{error}"),
                 }

@@ -30,13 +30,13 @@ pub(super) fn mount_options(order: &RunOrder) -> String {
 
 /// Copies files and folders with their permission bits. Holes in files remain holes. Links and special files are not
 /// copied.
-pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
+pub(super) fn copy_contents(from: &Path, to: &Path) -> io::Result<()> {
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
         let (metadata, target) = (entry.metadata()?, to.join(entry.file_name()));
         if metadata.is_dir() {
             std::fs::create_dir(&target)?;
-            copy(&entry.path(), &target)?;
+            copy_contents(&entry.path(), &target)?;
         } else if metadata.is_file() {
             copy_blocks(&File::open(entry.path())?, &mut File::create_new(&target)?, u64::MAX)?;
         } else {
@@ -118,7 +118,7 @@ mod tests {
         std::fs::set_permissions(from.join("inner/run.sh"), Permissions::from_mode(0o755)).unwrap();
         File::create(from.join("sparse")).unwrap().set_len(50 << 20).unwrap();
         std::os::unix::fs::symlink("/etc/passwd", from.join("link")).unwrap();
-        copy(&from, &to).unwrap();
+        copy_contents(&from, &to).unwrap();
         assert_eq!(std::fs::read(to.join("inner/run.sh")).unwrap(), b"text");
         assert_eq!(to.join("inner/run.sh").metadata().unwrap().mode() & 0o777, 0o755);
         let sparse = to.join("sparse").metadata().unwrap();

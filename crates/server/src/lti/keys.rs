@@ -56,7 +56,7 @@ fn generate() -> Result<(String, String, String), DbError> {
     Ok((text(der.as_bytes()), text(&key.n().to_bytes_be()), text(&key.e().to_bytes_be())))
 }
 
-async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
+async fn read_rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     let statement = "SELECT kid, private_key, modulus, exponent,
            CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
         FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC";
@@ -65,12 +65,12 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
 
 /// Returns all keys, the newest first. If there are no keys, the first one is created.
 async fn load_or_create_keys(database: &Database) -> Result<Vec<Row>, DbError> {
-    let found = rows(&mut database.read().await?).await?;
+    let found = read_rows(&mut database.read().await?).await?;
     if !found.is_empty() {
         return Ok(found);
     }
     new_key(database).await?;
-    rows(&mut database.read().await?).await
+    read_rows(&mut database.read().await?).await
 }
 
 /// Returns the key for signatures: the newest one that platforms had time to read, or otherwise the oldest.

@@ -40,7 +40,7 @@ impl Store {
                 self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH_FOLDER)).await?;
                 // In a bucket, a moved object is a new copy with a new age.
                 if let Some(folder) = &self.folder {
-                    touch(&folder.join(digest.key(TRASH_FOLDER).as_ref()));
+                    reset_age(&folder.join(digest.key(TRASH_FOLDER).as_ref()));
                 }
             }
         }
@@ -96,7 +96,7 @@ impl Store {
 }
 
 /// Sets a file's modification time to now. Errors are ignored.
-fn touch(file: &Path) {
+fn reset_age(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {
         tracing::debug!(%error, "the age of a file in the trash could not be reset");

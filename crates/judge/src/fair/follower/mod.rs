@@ -188,7 +188,7 @@ impl<'a> Follower<'a> {
         else {
             return;
         };
-        let explained = unapplied_pairs::explain(self.context, &tolerances, before, own, &end.state);
+        let explained = unapplied_pairs::explain_velocities(self.context, &tolerances, before, own, &end.state);
         if let Some((pairs, faulty)) = explained {
             self.judgement = earlier_judgement;
             pairs.into_iter().for_each(|detail| self.add_finding(detail));

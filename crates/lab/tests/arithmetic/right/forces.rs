@@ -110,7 +110,7 @@ impl<'a> ForceTerms<'a> {
             let repels = distance < radii + thickness && !(distance == 0.0 && detection == CollisionDetection::Contest);
             repels.then(|| stiffness * (1.0 - (radii + thickness) / distance) * n)
         };
-        near.visit(x, |pair| {
+        near.visit_pairs(x, |pair| {
             let (one, other) = (pair.first as usize, pair.second as usize);
             let (place, radius) = (vector_at(x, one), scene.particles[one].radius);
             match pair.kind {

@@ -53,7 +53,7 @@ pub struct PairTrait {
 }
 
 /// Returns the nearby pairs that wrong steps omit or apply twice, and those that they apply once.
-pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
+pub(super) fn explain_pairs(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut remaining_work = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<TraitVariant> = variants().collect();

@@ -77,7 +77,7 @@ impl Dictionary {
     }
 
     /// Returns the names of a product's letters, such as `e` and `h`.
-    pub fn names(&self, product: usize) -> Vec<Cow<'static, str>> {
+    pub fn letter_names(&self, product: usize) -> Vec<Cow<'static, str>> {
         self.products[product].letters.iter().map(|&index| self.letters[index].name.into()).collect()
     }
 }

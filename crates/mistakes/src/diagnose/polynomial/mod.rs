@@ -54,7 +54,7 @@ const MAX_COST_DIFFERENCE: f64 = 1.6;
 ///
 /// A few hundred samples of each kind, from different steps and pairs and including right ones, are enough. Samples
 /// whose formulas overflow are left out. The samples of one kind should include all of its polynomials.
-pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
+pub fn explain_polynomials(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
     let mut open: Vec<WrongPolynomial> = subjects
         .filter_map(|subject| PolynomialStudy::new(subject, samples))

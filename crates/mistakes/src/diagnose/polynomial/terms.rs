@@ -69,7 +69,7 @@ pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
     let fitting = TermFit::new(study, formula, reading);
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
-    let guesses: Vec<CoefficientEdits> = wrong.map(|power| fitting.explain(power)).collect();
+    let guesses: Vec<CoefficientEdits> = wrong.map(|power| fitting.explain_coefficient(power)).collect();
     // A polynomial without an explained coefficient is not a candidate.
     guesses.iter().find(|guess| !matches!(guess.edit(), CoefficientEdit::Unknown))?;
     let holds = |index: usize| {
@@ -146,7 +146,7 @@ impl<'a> TermFit<'a> {
     }
 
     /// Returns the explanations of a coefficient that hold for all samples.
-    fn explain(&self, power: usize) -> CoefficientEdits {
+    fn explain_coefficient(&self, power: usize) -> CoefficientEdits {
         let terms =
             self.find_term_changes(power).into_iter().map(|(changes, cost)| (CoefficientEdit::Terms(changes), cost));
         let factor = self.find_constant_factor(power).map(|(factor, cost)| (CoefficientEdit::Factor(factor), cost));
@@ -359,6 +359,6 @@ impl TermFit<'_> {
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {
         let (expected, actual) = self.weights(power, change);
-        Weight { reading: self.reading, power, letters: self.dictionary.names(change.0), expected, actual }
+        Weight { reading: self.reading, power, letters: self.dictionary.letter_names(change.0), expected, actual }
     }
 }

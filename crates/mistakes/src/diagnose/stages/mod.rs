@@ -63,8 +63,8 @@ pub(super) fn explain<'a>(
     let responses = responses::Responses::new(scene, &facts);
     contacts::explain_detection(&facts)
         .or_else(|| responses.explain(&facts))
-        .or_else(|| rounds::explain(scene, &facts, &responses))
-        .or_else(|| rigid::explain(scene, &facts))
+        .or_else(|| rounds::explain_impulse_rounds(scene, &facts, &responses))
+        .or_else(|| rigid::explain_geometric_part(scene, &facts))
 }
 
 /// Returns an observation, which reproduces nothing.

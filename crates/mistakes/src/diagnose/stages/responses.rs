@@ -98,7 +98,7 @@ impl Responses {
             WrongResponses::Amount(whose())
         };
         let details =
-            wrong.iter().map(|(changed, wrong)| change_detail(*changed, wrong, changes[changed].len())).collect();
+            wrong.iter().map(|(changed, wrong)| describe_change(*changed, wrong, changes[changed].len())).collect();
         Some(new_observation(
             StageFault::Responses { kind, wrong: what, in_rounds: self.has_rounds },
             details,
@@ -183,7 +183,7 @@ fn measure_change(particle: usize, quantity: Quantity, states: [&State; 3], u: V
     }
 }
 
-fn change_detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> StageDetail {
+fn describe_change(changed: ChangedQuantity, wrong: &[Change], contacts: usize) -> StageDetail {
     let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
     let amount = match common_value(&along) {
         _ if along.is_empty() => Amount::Unwanted,
@@ -191,5 +191,5 @@ fn change_detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> Stage
         _ => Amount::Ratio(ratios(&along)),
     };
     let across = wrong.iter().any(|change| change.changes_across);
-    StageDetail::Change { changed, amount, across, wrong: wrong.len(), of }
+    StageDetail::Change { changed, amount, across, wrong: wrong.len(), of: contacts }
 }

@@ -19,7 +19,7 @@ use fosssim_num::vector::{Vec2, divide, length, vector_at};
 const MIN_TURN: f64 = 1e-6;
 
 /// Returns the fault in the geometric part, if its start is right.
-pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
+pub(super) fn explain_geometric_part(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
     }

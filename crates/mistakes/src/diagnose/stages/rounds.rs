@@ -13,7 +13,7 @@ use fosssim_model::{
 use std::cmp::Ordering;
 
 /// Returns the fault in the impulse rounds, if their single contacts are right.
-pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
+pub(super) fn explain_impulse_rounds(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_mid_state()).collect();
     if wrong.is_empty() {

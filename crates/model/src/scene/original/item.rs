@@ -72,9 +72,10 @@ impl<'e> Item<'e> {
         self.read_optional("radius", default, "", "scalar")
     }
 
-    pub(super) fn read_optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Rejection> {
+    pub(super) fn read_optional(&self, name: &str, default: f64, prefix: &str, what: &str) -> Result<f64, Rejection> {
         let Some(text) = self.text(name) else { return Ok(default) };
-        values::parse_scalar(text).ok_or_else(|| self.rejection(of, name, &format!("Value must be {what}. Exiting.")))
+        values::parse_scalar(text)
+            .ok_or_else(|| self.rejection(prefix, name, &format!("Value must be {what}. Exiting.")))
     }
 
     /// Reads the color in `r`, `g`, `b`, and checks each component before the next is read.
@@ -91,19 +92,19 @@ impl<'e> Item<'e> {
     }
 
     /// Returns the message `Failed to parse [value of ]NAME attribute for WHO. END`.
-    pub(super) fn rejection(&self, of: &str, name: &str, end: &str) -> Rejection {
-        let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.describe());
+    pub(super) fn rejection(&self, prefix: &str, name: &str, end: &str) -> Rejection {
+        let text = format!("Failed to parse {prefix}{name} attribute for {}. {end}", self.describe());
         Rejection::from_message(text.as_bytes(), self.exit_code)
     }
 
     fn require<T>(
         &self,
         name: &str,
-        of_missing: &str,
+        missing_prefix: &str,
         what: &str,
         read: impl Fn(&[u8]) -> Option<T>,
     ) -> Result<T, Rejection> {
-        let text = self.text(name).ok_or_else(|| self.rejection(of_missing, name, "Exiting."))?;
+        let text = self.text(name).ok_or_else(|| self.rejection(missing_prefix, name, "Exiting."))?;
         read(text).ok_or_else(|| self.rejection("value of ", name, &format!("Value must be {what}. Exiting.")))
     }
 }

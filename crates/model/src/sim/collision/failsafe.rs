@@ -9,7 +9,7 @@ use fosssim_num::{
 /// new end positions and velocities. A zone with a half-plane or a fixed particle does not move.
 ///
 /// A zone whose particles are all at one point has no moment of inertia, and becomes NaN as in the original.
-pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q: &mut [f64], v: &mut [f64]) {
+pub(super) fn move_zone(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q: &mut [f64], v: &mut [f64]) {
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| bodies.fixed[particle]) {
         for particle in members() {
@@ -68,7 +68,7 @@ mod tests {
                 scene((0..4).map(|p| particle((start[2 * p], start[2 * p + 1]), (0.0, 0.0), masses[p], 0.1)).collect());
             let bodies = Bodies::new(&scene);
             let (mut q, mut v) = (end, [9.0; 8]);
-            apply(&bodies, 0.5, Zone { particles: &[0, 1, 3], half_plane: false }, &start, &mut q, &mut v);
+            move_zone(&bodies, 0.5, Zone { particles: &[0, 1, 3], half_plane: false }, &start, &mut q, &mut v);
             for (a, b) in [(0, 1), (0, 3), (1, 3)] {
                 let before = length(vector_at(&start, a) - vector_at(&start, b));
                 assert!((length(vector_at(&q, a) - vector_at(&q, b)) - before).abs() < 1e-14);
@@ -93,7 +93,7 @@ mod tests {
         let start = [0.0, 0.0, 1.0, 0.0];
         for zone in [Zone { particles: &[0, 1], half_plane: false }, Zone { particles: &[0], half_plane: true }] {
             let (mut q, mut v) = ([0.5, 0.5, 1.0, 0.0], [-3.0, f64::INFINITY, 0.0, 0.0]);
-            apply(&bodies, 0.5, zone, &start, &mut q, &mut v);
+            move_zone(&bodies, 0.5, zone, &start, &mut q, &mut v);
             assert_eq!(q, start);
             assert_eq!(v[0].to_bits(), (-0.0_f64).to_bits());
             assert!(v[1].is_nan());

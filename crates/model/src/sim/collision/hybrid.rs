@@ -103,7 +103,7 @@ fn move_zones<O: Observer>(
         round += 1;
         for zone in zones.iter() {
             observer.observe_failsafe(round, &zone);
-            failsafe::apply(bodies, law.time_step, zone, q_start, &mut state.positions, &mut state.velocities);
+            failsafe::move_zone(bodies, law.time_step, zone, q_start, &mut state.positions, &mut state.velocities);
         }
         detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
         builder.begin(bodies.particle_count());

@@ -75,12 +75,12 @@ impl Response {
         self.change_entries(v, |change| change.velocity);
     }
 
-    fn change_entries(&self, array: &mut [f64], of: fn(&Change) -> Vec2) {
+    fn change_entries(&self, array: &mut [f64], select: fn(&Change) -> Vec2) {
         if let Some(change) = &self.gain {
-            set_vector(array, change.particle, vector_at(array, change.particle) + of(change));
+            set_vector(array, change.particle, vector_at(array, change.particle) + select(change));
         }
         for change in self.loss.iter().flatten() {
-            set_vector(array, change.particle, vector_at(array, change.particle) - of(change));
+            set_vector(array, change.particle, vector_at(array, change.particle) - select(change));
         }
     }
 }

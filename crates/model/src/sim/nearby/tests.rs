@@ -104,7 +104,7 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
                 }
             }
             let mut visited = Vec::new();
-            PenaltyPairs::new(&scene, margin, CollisionDetection::AllPairs).visit(&x, |pair| visited.push(pair));
+            PenaltyPairs::new(&scene, margin, CollisionDetection::AllPairs).visit_pairs(&x, |pair| visited.push(pair));
             visited.retain(|&pair| is_near(&scene, margin, pair));
             assert_eq!(visited, near, "{seed}");
             for particle in &mut scene.particles {
@@ -169,6 +169,6 @@ fn objects_near_everything_are_not_listed() {
     assert!(nearby.find(&positions(&scene)).is_none());
     assert!(nearby.tested() < 1_000_000, "the search ends early: {}", nearby.tested());
     let mut visited = 0;
-    PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest).visit(&positions(&scene), |_| visited += 1);
+    PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest).visit_pairs(&positions(&scene), |_| visited += 1);
     assert_eq!(visited, balls * (balls - 1) / 2);
 }

@@ -150,7 +150,7 @@ impl Settings {
     }
 
     /// Describes the settings that differ from earlier ones. `suite` is the name of the uploaded suite.
-    pub(in crate::domain) fn changes(&self, before: &Self, suite: &str) -> String {
+    pub(in crate::domain) fn describe_changes(&self, before: &Self, suite: &str) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
             _ => Map::new(),

@@ -220,8 +220,8 @@ impl Admin {
     }
 }
 
-/// Returns a sentence in which a name is replaced by `other`, wherever the name is a whole word.
-fn replace_name(text: &str, name: &str, other: &str) -> String {
+/// Returns a sentence in which a name is replaced by `replacement`, wherever the name is a whole word.
+fn replace_name(text: &str, name: &str, replacement: &str) -> String {
     let is_word_char = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let mut rest = text;
     let mut replaced = String::with_capacity(text.len());
@@ -230,7 +230,7 @@ fn replace_name(text: &str, name: &str, other: &str) -> String {
         let is_whole_word = !replaced.chars().chain(before.chars()).next_back().is_some_and(is_word_char)
             && !after.starts_with(is_word_char);
         replaced.push_str(before);
-        replaced.push_str(if is_whole_word { other } else { name });
+        replaced.push_str(if is_whole_word { replacement } else { name });
         rest = after;
     }
     replaced + rest

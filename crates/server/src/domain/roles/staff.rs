@@ -139,7 +139,7 @@ impl Staff {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
         let mut text = format!("saved {slug} ({title}), {}", if visible { "visible" } else { "hidden" });
-        let changes = settings.changes(&before, &suite);
+        let changes = settings.describe_changes(&before, &suite);
         if !changes.is_empty() {
             text = format!("{text}: {changes}");
         }

@@ -31,43 +31,43 @@ impl Slip {
     }
 
     /// Returns the part of a sentence about the slip, which follows the quantity's name.
-    pub(super) fn predicate(self, of: &TermRow) -> String {
+    pub(super) fn predicate(self, row: &TermRow) -> String {
         let text = match self {
-            Self::Missing if of.is_function => match of.area() {
+            Self::Missing if row.is_function => match row.area() {
                 Area::Integrator => "is not written yet: a step changes nothing",
                 Area::SimpleDetection => "is not written yet, or finds nothing",
                 Area::Response => "is not written yet, or changes nothing",
                 _ => "is not written yet, or adds nothing",
             },
-            Self::Sign if of.id.starts_with("normal") => "points in exactly the opposite direction",
-            Self::Sign if of.area() == Area::SimpleDetection => "is reversed",
-            Self::Mass(-1) if of.id.ends_with("-mass") => "is taken as one for every particle",
-            Self::Mass(by) => return describe_power(of.mass, by, "the mass"),
-            Self::Step(by) => return describe_power(of.step, by, "the step size"),
-            Self::Length(1) if of.length == 0 => "has a direction that is not normalized",
-            Self::Length(2) if of.length == 0 => "has a direction that is not normalized in both places",
-            Self::Length(1) if of.length < -1 => {
+            Self::Sign if row.id.starts_with("normal") => "points in exactly the opposite direction",
+            Self::Sign if row.area() == Area::SimpleDetection => "is reversed",
+            Self::Mass(-1) if row.id.ends_with("-mass") => "is taken as one for every particle",
+            Self::Mass(by) => return describe_power(row.mass, by, "the mass"),
+            Self::Step(by) => return describe_power(row.step, by, "the step size"),
+            Self::Length(1) if row.length == 0 => "has a direction that is not normalized",
+            Self::Length(2) if row.length == 0 => "has a direction that is not normalized in both places",
+            Self::Length(1) if row.length < -1 => {
                 "lacks one division by the distance, or its direction is not normalized"
             }
-            Self::Length(by) => return describe_power(of.length, by, "the distance"),
-            Self::FirstOnly if of.area() == Area::SimpleDetection => {
+            Self::Length(by) => return describe_power(row.length, by, "the distance"),
+            Self::FirstOnly if row.area() == Area::SimpleDetection => {
                 "takes only the first of the two bodies into account"
             }
-            Self::SecondOnly if of.area() == Area::SimpleDetection => {
+            Self::SecondOnly if row.area() == Area::SimpleDetection => {
                 "does not take the first of the two bodies into account"
             }
-            Self::FirstOnly if of.area() == Area::Jacobians => "lacks the second particle's block on the diagonal",
-            Self::SecondOnly if of.area() == Area::Jacobians => "lacks the first particle's block on the diagonal",
-            Self::OtherVelocity if of.id.starts_with("explicit") => "uses the new velocity instead of the old one",
-            Self::NoFactor if of.id.starts_with("penalty") => "ignores the stiffness",
+            Self::FirstOnly if row.area() == Area::Jacobians => "lacks the second particle's block on the diagonal",
+            Self::SecondOnly if row.area() == Area::Jacobians => "lacks the first particle's block on the diagonal",
+            Self::OtherVelocity if row.id.starts_with("explicit") => "uses the new velocity instead of the old one",
+            Self::NoFactor if row.id.starts_with("penalty") => "ignores the stiffness",
             other => other.describe(),
         };
         text.to_owned()
     }
 
     /// Returns the exact form of the slip: the changed and the right formula of the quantity.
-    pub(super) fn exact_form(self, of: &TermRow) -> String {
-        let formula = of.formula;
+    pub(super) fn exact_form(self, row: &TermRow) -> String {
+        let formula = row.formula;
         let with = |factor: &str| format!("{factor} ({formula}) is used instead of {formula}.");
         let times = |letter: &str, by: i8| match by {
             1 => with(letter),

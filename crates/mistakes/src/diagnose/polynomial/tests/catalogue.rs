@@ -1,6 +1,6 @@
 //! The students of the catalogue on small random scenes: a mistake is explained correctly, and a correct variant is not
 //! explained at all.
-use super::{Explanation, Numbers, PairKind, Sample, explain, particle_lists, samples};
+use super::{Explanation, Numbers, PairKind, Sample, explain_polynomials, particle_lists, samples};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{Pair, PairMotion, PointMotion},
@@ -125,7 +125,7 @@ fn correct_variants_are_not_reported() {
     let is_known = |id: &str| FALSE_POSITIVES.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
     for style in [Style::General, Style::Slow, Style::Plain] {
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {
-            assert_eq!(explain(&first_passes(row, style)), [], "{} {style:?}", row.id);
+            assert_eq!(explain_polynomials(&first_passes(row, style)), [], "{} {style:?}", row.id);
         }
     }
 }
@@ -153,7 +153,7 @@ fn mistakes() -> impl Iterator<Item = &'static Row> {
 #[test]
 fn mistakes_of_the_catalogue_are_explained() {
     for (row, style) in mistakes().flat_map(|row| [(row, Style::General), (row, Style::Slow)]) {
-        let found = explain(&first_passes(row, style));
+        let found = explain_polynomials(&first_passes(row, style));
         let few = if row.id == "handover-approach-only" { 2 } else { 1 };
         assert_eq!(found.len(), few, "{} {style:?}: {found:#?}", row.id);
         for one in &found {
@@ -175,7 +175,7 @@ fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
         "ph-normal-length",
     ];
     for row in mistakes() {
-        let found = explain(&first_passes(row, Style::Plain));
+        let found = explain_polynomials(&first_passes(row, Style::Plain));
         assert_eq!(found.is_empty(), hidden.contains(&row.id), "{}: {found:#?}", row.id);
         assert!(found.iter().all(|one| one.reproduced == one.samples), "{}: {found:#?}", row.id);
     }
@@ -213,7 +213,7 @@ fn explanations_say_what_the_catalogue_says() {
     ] {
         let row = find(id).expect("the catalogue has it");
         for style in [Style::General, Style::Plain] {
-            let found = explain(&first_passes(row, style));
+            let found = explain_polynomials(&first_passes(row, style));
             assert_eq!(found.first().map(|one| one.key.as_str()), Some(key), "{id} {style:?}: {found:#?}");
         }
     }
@@ -236,5 +236,8 @@ fn odd_weights_from_few_samples_are_not_named() {
             Sample { polynomials: multiplied(&motion), motion, ..sample }
         })
         .collect();
-    assert_eq!(explain(&few).iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), [Explanation::UNEXPLAINED]);
+    assert_eq!(
+        explain_polynomials(&few).iter().map(|one| one.key.as_str()).collect::<Vec<_>>(),
+        [Explanation::UNEXPLAINED]
+    );
 }

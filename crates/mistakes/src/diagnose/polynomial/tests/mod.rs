@@ -172,7 +172,7 @@ fn only(
     is_told: impl Fn(&PolynomialDetail) -> bool,
     student: impl Fn(&PairMotion) -> Lists,
 ) -> Explanation {
-    let found = explain(&samples(kind, 300, student));
+    let found = explain_polynomials(&samples(kind, 300, student));
     let [one] = &found[..] else { panic!("{key}: {found:#?}") };
     assert_eq!(one.key, key, "{one:#?}");
     assert_eq!(one.reproduced, one.samples, "{one:#?}");
@@ -209,14 +209,14 @@ fn is(told: PolynomialDetail) -> impl Fn(&PolynomialDetail) -> bool {
 #[test]
 fn right_polynomials_need_no_explanation() {
     for kind in PairKind::ALL {
-        assert_eq!(explain(&samples(kind, 300, right_lists)), []);
+        assert_eq!(explain_polynomials(&samples(kind, 300, right_lists)), []);
         for scale in [3.0, 1e-3, 1e6] {
-            let scaled = explain(&samples(kind, 300, |motion| {
+            let scaled = explain_polynomials(&samples(kind, 300, |motion| {
                 right_lists(motion).iter().map(|list| list.iter().map(|value| value * scale).collect()).collect()
             }));
             assert_eq!(scaled, [], "{scale}");
         }
-        let each_its_own = explain(&samples(kind, 300, |motion| {
+        let each_its_own = explain_polynomials(&samples(kind, 300, |motion| {
             let scale = |list: &[f64]| 0.1 + list.iter().map(|value| value.abs()).sum::<f64>();
             right_lists(motion).iter().map(|list| list.iter().map(|value| value / scale(list)).collect()).collect()
         }));
@@ -232,7 +232,7 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
         lists[3] = quintic(&l, l.f, false);
         lists
     };
-    assert_eq!(explain(&samples(PairKind::ParticleEdge, 300, student)), []);
+    assert_eq!(explain_polynomials(&samples(PairKind::ParticleEdge, 300, student)), []);
 }
 
 /// For each polynomial, every formula gives the polynomial that the fair rules expect, including the right quintic.
@@ -421,7 +421,7 @@ fn lists_handed_over_wrongly_are_named() {
     ];
     for kind in PairKind::ALL {
         for (key, change) in changes {
-            let found = explain(&samples(kind, 300, |motion| {
+            let found = explain_polynomials(&samples(kind, 300, |motion| {
                 let mut lists = right_lists(motion);
                 change(&mut lists);
                 lists
@@ -431,7 +431,7 @@ fn lists_handed_over_wrongly_are_named() {
         }
         // NaN proves nothing about a formula.
         let nan = |motion: &PairMotion| right_lists(motion).iter().map(|list| vec![f64::NAN; list.len()]).collect();
-        assert_eq!(explain(&samples(kind, 300, nan)), []);
+        assert_eq!(explain_polynomials(&samples(kind, 300, nan)), []);
     }
 }
 
@@ -536,7 +536,7 @@ fn small_slips_in_quadratics_are_named() {
 /// such.
 #[test]
 fn partly_reproduced_mistakes_are_marked() {
-    let partly = explain(&samples(PairKind::ParticleEdge, 300, |motion| {
+    let partly = explain_polynomials(&samples(PairKind::ParticleEdge, 300, |motion| {
         let mut lists = edge_lists(motion);
         if lists[1][2] > 0.0 {
             lists[0].reverse();
@@ -546,7 +546,7 @@ fn partly_reproduced_mistakes_are_marked() {
     assert_eq!(partly.len(), 1);
     assert_eq!(partly[0].key, "reversed");
     assert!(partly[0].reproduced > 50 && partly[0].reproduced < partly[0].samples, "{partly:#?}");
-    let noise = explain(&samples(PairKind::ParticleEdge, 300, |motion| {
+    let noise = explain_polynomials(&samples(PairKind::ParticleEdge, 300, |motion| {
         let mut lists = edge_lists(motion);
         lists[0][2] += (lists[0][4] * 100.0).abs().sqrt();
         lists
@@ -573,11 +573,11 @@ fn hostile_samples_do_no_harm() {
                 }
             }
         }
-        for explanation in explain(&list) {
+        for explanation in explain_polynomials(&list) {
             assert!(explanation.reproduced <= explanation.samples);
         }
     }
-    assert_eq!(explain(&[]), []);
+    assert_eq!(explain_polynomials(&[]), []);
 }
 
 /// The example has the shortest numbers, and then the earliest step.
@@ -591,7 +591,7 @@ fn the_example_is_the_roundest_one() {
     let still = |x: f64, dx: f64| PointMotion { start: Vec2::new(x, 0.0), shift: Vec2::new(dx, 0.0) };
     list[20].motion = PairMotion::Particles { centers: [still(0.0, 1.0), still(4.0, -1.0)], radii: [1.0, 1.0] };
     list[20].polynomials = vec![vec![-12.0, 16.0, -4.0], vec![-4.0, 8.0]];
-    let found = explain(&list);
+    let found = explain_polynomials(&list);
     let example = found[0].example.as_ref().expect("there is a wrong sample");
     let place = ExamplePlace::Given { pair: list[20].pair, pass: 0, subject: Subject::ParticleOverlap };
     assert_eq!(example.place, place);

@@ -106,7 +106,7 @@ impl HitSearch<'_> {
                 return false;
             };
             let pair = pair(PairKind::ParticleEdge, first, edge);
-            if compute_edge(pair, row, &self.input, self.counts, self.cursor, output) {
+            if process_edge_pair(pair, row, &self.input, self.counts, self.cursor, output) {
                 return true;
             }
         }
@@ -127,14 +127,7 @@ impl HitSearch<'_> {
         let rows = self.group.half_planes.as_chunks::<SHORT_ROW_LENGTH>().0;
         for second in seconds {
             let pair = pair(PairKind::ParticleHalfPlane, first, second);
-            if compute_two_polynomials(
-                pair,
-                &rows[second * width + lane],
-                &self.input,
-                self.counts,
-                self.cursor,
-                output,
-            ) {
+            if process_other_pair(pair, &rows[second * width + lane], &self.input, self.counts, self.cursor, output) {
                 return true;
             }
         }
@@ -158,7 +151,7 @@ impl HitSearch<'_> {
             largest = compute_particles(simd, self.lists, [first, block], rows, largest);
             for (row, second) in rows.as_chunks().0[..width].iter().zip(block..seconds.end) {
                 let pair = pair(PairKind::ParticleParticle, first, second);
-                ends = compute_two_polynomials(pair, row, &self.input, self.counts, self.cursor, output);
+                ends = process_other_pair(pair, row, &self.input, self.counts, self.cursor, output);
                 if ends {
                     break;
                 }
@@ -173,7 +166,7 @@ impl HitSearch<'_> {
 /// Decides a pair with an edge, if the certificate left it open, and writes its polynomials. Returns whether the output
 /// contains a result.
 #[inline(always)]
-fn compute_edge(
+fn process_edge_pair(
     pair: Pair,
     row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
     input: &PassInput<'_>,
@@ -194,7 +187,7 @@ fn compute_edge(
 /// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output
 /// contains a result.
 #[inline(always)]
-fn compute_two_polynomials(
+fn process_other_pair(
     pair: Pair,
     row: &[f64; SHORT_ROW_LENGTH],
     input: &PassInput<'_>,

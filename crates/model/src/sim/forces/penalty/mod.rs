@@ -65,7 +65,7 @@ impl Penalty {
     /// Adds the gradient, pair by pair.
     pub fn add_gradient(&mut self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
         let law = self.parameters;
-        self.pairs.visit(x, |pair| law.add(bodies, pair, x, gradient));
+        self.pairs.visit_pairs(x, |pair| law.add(bodies, pair, x, gradient));
     }
 }
 

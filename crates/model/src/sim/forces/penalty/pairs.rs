@@ -53,7 +53,7 @@ impl PenaltyPairs {
 
     /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
     /// order in which they are summed. In large scenes few other pairs are included.
-    pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
+    pub fn visit_pairs(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;
         let objects = ObjectCounts { particles, edges: edges.len(), half_planes: self.half_planes };

@@ -30,9 +30,9 @@ impl PenaltyTerms {
     }
 
     /// Calls `visit` for every pair that repels at positions `x` (2N), with the force on each of its particles.
-    pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair, &[(usize, Vec2)])) {
+    pub fn visit_pairs(&mut self, x: &[f64], mut visit: impl FnMut(Pair, &[(usize, Vec2)])) {
         let Self { bodies, penalty: Penalty { parameters: law, pairs }, gradient } = self;
-        pairs.visit(x, |pair| {
+        pairs.visit_pairs(x, |pair| {
             let count = match pair.kind {
                 PairKind::ParticleParticle => 2,
                 PairKind::ParticleEdge => 3,

@@ -88,7 +88,7 @@ fn searched(scene: &Scene, steps: &[&[f64]]) -> Vec<[u32; 2]> {
     let mut found = Vec::new();
     for x in steps {
         found.clear();
-        pairs.visit(x, |pair| found.push([pair.first, pair.second]));
+        pairs.visit_pairs(x, |pair| found.push([pair.first, pair.second]));
     }
     found
 }
@@ -102,12 +102,12 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     // A simulation that continues from a copied order gives the same result.
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     let mut order = SweepOrder::default();
-    pairs.visit(&first, |_| {});
+    pairs.visit_pairs(&first, |_| {});
     assert!(pairs.copy_order(&mut order));
     let mut other = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     other.set_order(&order);
     let mut found = Vec::new();
-    other.visit(&then, |pair| found.push([pair.first, pair.second]));
+    other.visit_pairs(&then, |pair| found.push([pair.first, pair.second]));
     assert_eq!(found, searched(&scene, &[&first, &then]));
 }
 
@@ -151,7 +151,7 @@ fn check_search(count: usize) {
             x[40] = f64::NAN;
         }
         let mut found = Vec::new();
-        pairs.visit(&x, |pair| found.push([pair.first, pair.second]));
+        pairs.visit_pairs(&x, |pair| found.push([pair.first, pair.second]));
         let overlap = |i: usize, j: usize| {
             (0..2).all(|axis| {
                 let [one, other] = [i, j].map(|body| [-radii[body], radii[body]].map(|r| x[2 * body + axis] + r));
