@@ -59,7 +59,7 @@ pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
     let report = DetectReport { study: &study, place: None };
     let picture = |embedding| detection::render_picture(&study, &report.title(), embedding).into_bytes();
-    let value = json!({ "decision": report.decision(format_g), "collides": study.answer.decision.collides() });
+    let value = json!({ "decision": report.describe_decision(format_g), "collides": study.answer.decision.collides() });
     let parts = vec![
         report.render_text(Style::Plain).into_bytes(),
         report.json().into_bytes(),

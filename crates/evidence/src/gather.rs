@@ -248,7 +248,7 @@ impl<'a> EvidenceBuilder<'a> {
         // The inspector must observe first: it keeps the expected mid record, and then makes the step continue with the
         // trace's.
         if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
-            count.deviations = distances(expected, mid);
+            count.deviations = measure_distances(expected, mid);
         }
         self.evidence.inspected.push(inspector.finish());
         done.then_some(count)
@@ -260,7 +260,7 @@ impl<'a> EvidenceBuilder<'a> {
     }
 
     fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
-        let [position, velocity] = distances(self.step_run.state(), &end.state);
+        let [position, velocity] = measure_distances(self.step_run.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
             position: max_with_nan(count.deviations[0], position),
@@ -286,7 +286,7 @@ fn find_detailed_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout
 }
 
 /// Returns the distances between two states, in positions and in velocities.
-fn distances(one: &State, other: &State) -> [f64; 2] {
+fn measure_distances(one: &State, other: &State) -> [f64; 2] {
     [max_distance(&one.positions, &other.positions), max_distance(&one.velocities, &other.velocities)]
 }
 
@@ -351,7 +351,7 @@ impl Observer for PassCount<'_> {
 impl StepController for PassCount<'_> {
     fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
-            self.deviations = distances(state, mid);
+            self.deviations = measure_distances(state, mid);
         }
         continue_from(self.mid, state)
     }

@@ -59,8 +59,8 @@ pub struct LocatedFailure {
 impl FailureKind {
     /// Returns how a program failed that ended in this way; `None` if it ended normally, or if the kind of failure is
     /// unknown.
-    pub const fn from_end(ended: &RunEnd) -> Option<Self> {
-        match ended {
+    pub const fn from_end(end: &RunEnd) -> Option<Self> {
+        match end {
             RunEnd::Signalled(_) => Some(Self::Crash),
             RunEnd::Exited(0) | RunEnd::CouldNotStart(_) | RunEnd::Cancelled => None,
             RunEnd::Exited(_) => Some(Self::Error),

@@ -170,9 +170,9 @@ fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
 
 /// Returns the verdict on how the program ended. If a program was stopped because it wrote bytes after the last record,
 /// the run counts as successful, because all records were judged.
-fn program_verdict(ended: &RunEnd, judged: &Outcome) -> Verdict {
-    let had_all = judged.stop.is_none() && judged.trailing_bytes;
-    match ended {
+fn program_verdict(end: &RunEnd, outcome: &Outcome) -> Verdict {
+    let had_all = outcome.stop.is_none() && outcome.trailing_bytes;
+    match end {
         RunEnd::Exited(0) => Verdict::Accepted,
         RunEnd::TraceLimit if had_all => Verdict::Accepted,
         RunEnd::Cancelled => Verdict::NotRun,
@@ -186,14 +186,14 @@ fn program_verdict(ended: &RunEnd, judged: &Outcome) -> Verdict {
 }
 
 /// Returns how far a program's trace reaches, and the limit that stopped the program, if any.
-fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
-    let limit = match ended {
+fn find_progress(end: &RunEnd, outcome: &Outcome, limits: &RunLimits) -> ProgramProgress {
+    let limit = match end {
         RunEnd::CpuLimit => Some(Limit::Time(limits.cpu)),
         RunEnd::WallLimit => Some(Limit::Time(limits.wall)),
         RunEnd::MemoryLimit => Some(Limit::Memory(limits.memory)),
         _ => None,
     };
-    ProgramProgress { limit, steps: judged.steps_judged }
+    ProgramProgress { limit, steps: outcome.steps_judged }
 }
 
 /// Returns the verdict on the trace, and the reason for it. How the program ended does not matter here.

@@ -209,7 +209,7 @@ impl Runner<'_> {
     ) -> Result<(RunningProgram, TemporaryFolder), String> {
         let folder = self.folders.take_folder().map_err(|error| format!("cannot create the run's folder: {error}"))?;
         let job = Job::new(program, folder.path())
-            .arguments(self.arguments(program))
+            .arguments(self.build_arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
             .trace(TRACE_FILE)
             .policy(Policy::Submission)
@@ -260,7 +260,7 @@ impl Runner<'_> {
         recording::judge(&task.scene, kept.keep_from(trace), recording, watch).map_err(|error| error.to_string())
     }
 
-    fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
+    fn build_arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
         self.command
             .iter()
             .skip(1)

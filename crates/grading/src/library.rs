@@ -37,7 +37,7 @@ pub fn all_names() -> impl Iterator<Item = &'static str> {
 
 /// Returns the content of a built-in scene's file; `None` if there is no scene with this name.
 pub fn find_scene(name: &str) -> Option<&'static [u8]> {
-    contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_generated(name).map(GeneratedScene::xml))
+    find_content(&ASSETS, &format!("{name}.xml")).or_else(|| find_generated(name).map(GeneratedScene::xml))
 }
 
 /// Returns the generated scene with this name or full name.
@@ -49,7 +49,7 @@ fn find_generated(name: &str) -> Option<&'static GeneratedScene> {
 /// Returns the recording of a scene, compressed with zstd; `None` if there is none.
 #[cfg(target_os = "linux")]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
-    contents(&REFERENCES, &format!("{name}.bin.zst"))
+    find_content(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
 /// Returns `None`, because builds that cannot run programs contain no recordings.
@@ -68,7 +68,7 @@ pub fn recordings() -> impl Iterator<Item = &'static str> {
 /// `Group/name.bin.zst`.
 #[cfg(target_os = "linux")]
 pub fn recording_file(path: &str) -> Option<&'static [u8]> {
-    contents(&REFERENCES, path)
+    find_content(&REFERENCES, path)
 }
 
 /// Returns the assignment in whose folder a scene is.
@@ -104,7 +104,7 @@ fn file_stems(root: &'static Dir<'static>, extension: &str) -> impl Iterator<Ite
     names.into_iter()
 }
 
-fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
+fn find_content(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
     file(root, path).map(File::contents)
 }
 

@@ -178,11 +178,11 @@ impl Shrinker<'_> {
 }
 
 /// Returns the wrong steps of a run. If the program did not end normally, this is the step after its last record.
-fn list_wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
+fn list_wrong_steps(scene: &Scene, observation: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
-    let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
+    let examined = examine(scene, &observation.trace[..], KeptPart::Nothing, &options, &mut ());
     let is_unreadable = matches!(examined.outcome.stop, Some(Stop::Trace { .. }));
-    let ended = FailureKind::from_end(&seen.ended).is_some() || is_unreadable;
+    let ended = FailureKind::from_end(&observation.ended).is_some() || is_unreadable;
     let behind =
         (ended && examined.outcome.steps_judged < scene.step_count()).then_some(examined.outcome.steps_judged + 1);
     let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);

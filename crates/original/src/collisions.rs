@@ -7,7 +7,7 @@ use fosssim_num::{number_format::format_g, vector::Vec2};
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 
 /// Returns the line about one collision, or `None` if the remark is about polynomials.
-pub(crate) fn line(remark: &Remark) -> Option<String> {
+pub(crate) fn describe_remark(remark: &Remark) -> Option<String> {
     match remark {
         Remark::Missed(expected) => {
             Some(format!("  Missed collision: {}\n", describe(&LoggedImpulse::from(*expected))))
@@ -55,7 +55,7 @@ mod tests {
 
     #[test]
     fn an_unknown_kind_has_no_words() {
-        let line = line(&Remark::Superfluous(logged(9, 1.0, 2.0))).unwrap();
+        let line = describe_remark(&Remark::Superfluous(logged(9, 1.0, 2.0))).unwrap();
         assert_eq!(line, "  Superfluous collision: \n");
     }
 }

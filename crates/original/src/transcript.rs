@@ -227,7 +227,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
         self.end_step(step);
         let mut header_due = true;
         for remark in remarks {
-            if let Some(line) = collisions::line(remark) {
+            if let Some(line) = collisions::describe_remark(remark) {
                 if std::mem::take(&mut header_due) {
                     self.write(collisions::HEADER.as_bytes());
                 }

@@ -85,7 +85,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     });
     let mut text = format!("Forces at {at_which}\n");
     text += &if parts.is_empty() { "  none\n".to_owned() } else { render_table(["", "particle", "gradient"], rows) };
-    let formulas: BTreeSet<&str> = scene.forces.iter().map(formula).collect();
+    let formulas: BTreeSet<&str> = scene.forces.iter().map(force_formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
     text.extend(render_penalty(scene, &place));
     let words = match scene.integrator {
@@ -162,7 +162,7 @@ fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
 }
 
 /// Returns the formula of what a force adds to the gradient of the potential.
-const fn formula(force: &Force) -> &'static str {
+const fn force_formula(force: &Force) -> &'static str {
     match force {
         Force::Spring { .. } => {
             "springforce: -(k (l - l0) + b n.(v_j - v_i)) n for i and the opposite for j, with n = (x_j - x_i) / l"
@@ -185,8 +185,8 @@ fn render_table<const COLUMNS: usize>(
     rows: impl IntoIterator<Item = [String; COLUMNS]>,
 ) -> String {
     let mut table = Table::new([Align::Left; COLUMNS]);
-    table.heading(heading);
-    rows.into_iter().for_each(|row| table.row(row.map(Into::into)));
+    table.add_heading(heading);
+    rows.into_iter().for_each(|row| table.add_row(row.map(Into::into)));
     table.render(Style::Plain)
 }
 

@@ -64,11 +64,11 @@ impl DetectReport<'_> {
                 PairMotion::HalfPlane { .. } => "A particle and a half-plane".to_owned(),
             };
         };
-        title(place.pair, place.step, place.trace, place.scene)
+        write_title(place.pair, place.step, place.trace, place.scene)
     }
 
     /// Returns the decision as a sentence. `number` formats the numbers in it.
-    pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
+    pub fn describe_decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
         let time = number(answer.decision.time());
         match answer.decision {
@@ -154,7 +154,7 @@ impl DetectReport<'_> {
         text += &format!("\n{}\n", style.paint(TextStyle::Strong, "Decision"));
         text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive_intervals, number));
         let look = if study.answer.decision.collides() { TextStyle::Notice } else { TextStyle::Right };
-        text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_rounded_or(time, number))));
+        text += &format!("  {}\n", style.paint(look, &self.describe_decision(|time| format_rounded_or(time, number))));
         text += match study.certain_decision {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
@@ -187,7 +187,7 @@ impl DetectReport<'_> {
     }
 }
 
-fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
+fn write_title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     let run = trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
     let words = PairText(pair).to_string();
     let (first, rest) = words.split_at(1);
@@ -214,7 +214,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
         return text;
     }
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
-    table.heading(["", "expected", "logged", ""]);
+    table.add_heading(["", "expected", "logged", ""]);
     for power in (0..expected.len().max(own.len())).rev() {
         let at = |list: &[f64], factor: f64| {
             list.len()
@@ -222,7 +222,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
                 .map_or_else(|| "none".to_owned(), |place| format_exact(list[place] * factor))
         };
         let mark = if wrong.contains(&power) { Cell::with_style(TextStyle::Wrong, "<- differs") } else { "".into() };
-        table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
+        table.add_row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
     }
     text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));
     if factor != 1.0 {
@@ -251,11 +251,11 @@ fn compare_approach(course: &Answer, right: &Answer, number: FormatFn) -> String
 pub(crate) fn render_motion(motion: &PairMotion, number: FormatFn, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
-    table.heading(["", "start", "displacement", "radius"]);
+    table.add_heading(["", "start", "displacement", "radius"]);
     let mut moving = |name: &str, point: PointMotion, radius: Option<f64>| {
         let (start, shift) = (vector(point.start.x, point.start.y), vector(point.shift.x, point.shift.y));
         let radius = radius.map(number).unwrap_or_default();
-        table.row([name.into(), start.into(), shift.into(), Cell::from(radius)]);
+        table.add_row([name.into(), start.into(), shift.into(), Cell::from(radius)]);
     };
     match *motion {
         PairMotion::Particles { centers: [one, two], radii } => {
@@ -270,7 +270,7 @@ pub(crate) fn render_motion(motion: &PairMotion, number: FormatFn, style: Style)
         PairMotion::HalfPlane { center, radius, point, normal } => {
             moving("x, particle", center, Some(radius));
             let (point, normal) = (vector(point.x, point.y), vector(normal.x, normal.y));
-            table.row(["p, half-plane".into(), point.into(), format!("n = {normal}").into(), "".into()]);
+            table.add_row(["p, half-plane".into(), point.into(), format!("n = {normal}").into(), "".into()]);
         }
     }
     table.render(style)

@@ -104,10 +104,10 @@ impl Format {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// Returns the names of the formats that `wanted` selects, as a list such as `text, json or csv`.
-    pub fn join_names(wanted: impl Fn(Self) -> bool) -> String {
-        let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
-        let names: Vec<&str> = wanted.map(Self::name).collect();
+    /// Returns the names of the formats that `select` selects, as a list such as `text, json or csv`.
+    pub fn join_names(select: impl Fn(Self) -> bool) -> String {
+        let select = Self::ALL.iter().copied().filter(|format| select(*format));
+        let names: Vec<&str> = select.map(Self::name).collect();
         match names.split_last() {
             Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
             _ => names.concat(),

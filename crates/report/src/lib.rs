@@ -7,8 +7,8 @@
 //! use fosssim_report::{number::format_count, style::Style, table::{Align, Table}};
 //!
 //! let mut table = Table::new([Align::Left, Align::Right]);
-//! table.row(["judged".into(), format_count(12_345, "step").into()]);
-//! table.row(["wrong".into(), format_count(1, "step").into()]);
+//! table.add_row(["judged".into(), format_count(12_345, "step").into()]);
+//! table.add_row(["wrong".into(), format_count(1, "step").into()]);
 //! assert_eq!(table.render(Style::Plain), "  judged   12 345 steps\n  wrong          1 step\n");
 //! ```
 #![forbid(unsafe_code)]

@@ -38,7 +38,7 @@ pub(crate) fn format_rounded_or(value: f64, fallback: fn(f64) -> String) -> Stri
 }
 
 /// Formats a count with separated thousands, such as `1 234 567`. Four digits are not separated.
-pub fn count(value: u64) -> String {
+pub fn group_digits(value: u64) -> String {
     let digits = value.to_string();
     if digits.len() < 5 {
         return digits;
@@ -56,7 +56,7 @@ pub fn count(value: u64) -> String {
 /// Formats a count and its noun, such as `1 step` or `12 345 steps`.
 pub fn format_count(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
-    format!("{} {noun}{plural}", count(value))
+    format!("{} {noun}{plural}", group_digits(value))
 }
 
 /// Formats two values in the same notation, as short as a comparison allows: with six digits, but at least two digits
@@ -129,10 +129,10 @@ mod tests {
 
     #[test]
     fn counts_are_grouped_from_five_digits_on() {
-        assert_eq!(count(0), "0");
-        assert_eq!(count(1234), "1234");
-        assert_eq!(count(12_345), "12 345");
-        assert_eq!(count(1_234_567), "1 234 567");
+        assert_eq!(group_digits(0), "0");
+        assert_eq!(group_digits(1234), "1234");
+        assert_eq!(group_digits(12_345), "12 345");
+        assert_eq!(group_digits(1_234_567), "1 234 567");
         assert_eq!((format_count(1, "step"), format_count(0, "step")), ("1 step".to_owned(), "0 steps".to_owned()));
     }
 }

@@ -1,6 +1,6 @@
 //! The summary that `simulate` prints.
 use super::{
-    number::{count, format_count},
+    number::{format_count, group_digits},
     style::{Style, TextStyle},
     table::{Align, Table},
     view::SCHEMA,
@@ -33,7 +33,7 @@ impl SimulationSummary<'_> {
     pub fn render_text(&self, style: Style) -> String {
         let counts = &self.counts;
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
-        table.row(["steps".into(), count(u64::from(self.steps)).into(), "".into()]);
+        table.add_row(["steps".into(), group_digits(u64::from(self.steps)).into(), "".into()]);
         let passes: Vec<_> = [
             (counts.simple_passes, "simple"),
             (counts.continuous_time_passes, "continuous-time"),
@@ -42,15 +42,15 @@ impl SimulationSummary<'_> {
         ]
         .into_iter()
         .filter(|(number, _)| *number > 0)
-        .map(|(number, name)| format!("{} {name}", count(number)))
+        .map(|(number, name)| format!("{} {name}", group_digits(number)))
         .collect();
-        table.row(["detection passes".into(), count(counts.passes()).into(), passes.join(", ").into()]);
+        table.add_row(["detection passes".into(), group_digits(counts.passes()).into(), passes.join(", ").into()]);
         for (kind, &calls) in counts.calls.iter() {
             let hits = counts.hits[kind];
-            let hits = if calls > 0 { format!("{} collide", count(hits)) } else { String::new() };
-            table.row([format!("{} calls", kind.name()).into(), count(calls).into(), hits.into()]);
+            let hits = if calls > 0 { format!("{} collide", group_digits(hits)) } else { String::new() };
+            table.add_row([format!("{} calls", kind.name()).into(), group_digits(calls).into(), hits.into()]);
         }
-        table.row(["impulses".into(), count(counts.impulses).into(), "".into()]);
+        table.add_row(["impulses".into(), group_digits(counts.impulses).into(), "".into()]);
         let zones = if counts.failsafes > 0 {
             format!(
                 "in {}, largest zone of {}",
@@ -60,14 +60,14 @@ impl SimulationSummary<'_> {
         } else {
             String::new()
         };
-        table.row(["rigid failsafes".into(), count(counts.failsafes).into(), zones.into()]);
-        table.row(["polynomials".into(), count(counts.polynomials).into(), "".into()]);
+        table.add_row(["rigid failsafes".into(), group_digits(counts.failsafes).into(), zones.into()]);
+        table.add_row(["polynomials".into(), group_digits(counts.polynomials).into(), "".into()]);
         let records = format!("in {}", format_count(self.written_trace.records, "record"));
-        table.row(["bytes".into(), count(self.written_trace.bytes).into(), records.into()]);
+        table.add_row(["bytes".into(), group_digits(self.written_trace.bytes).into(), records.into()]);
         if let Some(searches) = self.audit_counts {
-            let excluded = format!("{} excluded by a certificate", count(searches.excluded));
-            table.row(["root searches".into(), count(searches.searched).into(), excluded.into()]);
-            table.row(["disagreements".into(), count(searches.disagreements).into(), "".into()]);
+            let excluded = format!("{} excluded by a certificate", group_digits(searches.excluded));
+            table.add_row(["root searches".into(), group_digits(searches.searched).into(), excluded.into()]);
+            table.add_row(["disagreements".into(), group_digits(searches.disagreements).into(), "".into()]);
         }
         let end = self.output.map_or_else(|| "; nothing was kept".to_owned(), |name| format!(" into {name}"));
         let heading = format!("Simulated {}{end}", self.scene);

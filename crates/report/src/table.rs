@@ -47,13 +47,13 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
     }
 
     /// Appends a row.
-    pub fn row(&mut self, cells: [Cell; COLUMNS]) {
+    pub fn add_row(&mut self, cells: [Cell; COLUMNS]) {
         self.rows.push(cells);
     }
 
     /// Appends a row whose cells are headings.
-    pub fn heading(&mut self, titles: [&str; COLUMNS]) {
-        self.row(titles.map(|title| Cell::with_style(TextStyle::Faint, title)));
+    pub fn add_heading(&mut self, titles: [&str; COLUMNS]) {
+        self.add_row(titles.map(|title| Cell::with_style(TextStyle::Faint, title)));
     }
 
     /// Renders each row as a line, indented by two blanks. There are three blanks between columns, and none at the ends
@@ -91,17 +91,17 @@ mod tests {
     #[test]
     fn columns_line_up_and_lines_have_no_trailing_blanks() {
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
-        table.heading(["name", "n", "note"]);
-        table.row(["a".into(), "100".into(), "".into()]);
-        table.row(["longer".into(), "".into(), Cell::with_style(TextStyle::Wrong, "no")]);
+        table.add_heading(["name", "n", "note"]);
+        table.add_row(["a".into(), "100".into(), "".into()]);
+        table.add_row(["longer".into(), "".into(), Cell::with_style(TextStyle::Wrong, "no")]);
         assert_eq!(table.render(Style::Plain), "  name       n   note\n  a        100\n  longer         no\n");
     }
 
     #[test]
     fn colors_do_not_move_columns() {
         let mut table = Table::new([Align::Right, Align::Left]);
-        table.row([Cell::with_style(TextStyle::Right, "1"), "x".into()]);
-        table.row(["10".into(), "y".into()]);
+        table.add_row([Cell::with_style(TextStyle::Right, "1"), "x".into()]);
+        table.add_row(["10".into(), "y".into()]);
         assert_eq!(table.render(Style::Color), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
     }
 }

@@ -53,7 +53,7 @@ impl Supervisor {
     }
 
     /// Returns the command that starts the supervisor in `mode`, without the grader's environment.
-    fn command(&self, mode: &str) -> Command {
+    fn build_command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
         // Copies of programs are in this folder, so the probe tests whether programs can be executed there.
@@ -65,7 +65,7 @@ impl Supervisor {
     /// Starts the supervisor of a run, and passes it the descriptors that the run's layers need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let begin = || -> io::Result<_> {
-            let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;
+            let (mut child, control) = spawn_connected(self.build_command(MODE_RUN))?;
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
             Ok(SpawnedSupervisor { host: RunSupervisor::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
@@ -93,7 +93,7 @@ impl Supervisor {
             ));
         }
         let begin = || -> io::Result<_> {
-            let mut command = self.command(MODE_KEEP);
+            let mut command = self.build_command(MODE_KEEP);
             command.stdout(Stdio::null());
             let (child, socket) = spawn_connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
@@ -112,7 +112,7 @@ impl Supervisor {
 
     /// Tests each layer once on this host.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
-        let child = self.command(MODE_PROBE).spawn().map_err(|source| self.start_error(source))?;
+        let child = self.build_command(MODE_PROBE).spawn().map_err(|source| self.start_error(source))?;
         let output = child.wait_with_output();
         let lost = |how: String| SandboxError::Lost { how };
         let output = output.map_err(|error| lost(error.to_string()))?;

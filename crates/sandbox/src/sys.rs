@@ -155,9 +155,9 @@ pub(super) fn connect_standard_streams(input: &OwnedFd, output: &OwnedFd, error:
     Ok(rustix::stdio::dup2_stderr(error)?)
 }
 
-/// Returns a copy of the descriptor whose number is at least `least`. The next `execve` closes it.
-pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<OwnedFd> {
-    Ok(rustix::io::fcntl_dupfd_cloexec(fd, least.cast_signed())?)
+/// Returns a copy of the descriptor whose number is at least `min`. The next `execve` closes it.
+pub(super) fn duplicate_from(fd: BorrowedFd<'_>, min: u32) -> io::Result<OwnedFd> {
+    Ok(rustix::io::fcntl_dupfd_cloexec(fd, min.cast_signed())?)
 }
 
 /// Keeps the descriptor open across `execve`.

@@ -114,8 +114,8 @@ fn list_parts(report: &GradeFile) -> String {
     serde_json::to_string(&parts).unwrap_or_default()
 }
 
-fn to_text(shown: &VisibleGrade) -> String {
-    serde_json::to_string(shown).unwrap_or_default()
+fn to_text(grade: &VisibleGrade) -> String {
+    serde_json::to_string(grade).unwrap_or_default()
 }
 
 /// Returns the grade that students see if all groups are withheld.

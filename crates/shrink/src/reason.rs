@@ -37,21 +37,21 @@ pub enum WrongReason {
 
 impl WrongReason {
     /// Returns the reason of a program that does not end normally.
-    pub fn from_end(ended: &RunEnd) -> Option<Self> {
-        let signal = if let RunEnd::Signalled(signal) = ended { Some(*signal) } else { None };
-        FailureKind::from_end(ended).map(|failure| Self::Ended(failure, signal))
+    pub fn from_end(end: &RunEnd) -> Option<Self> {
+        let signal = if let RunEnd::Signalled(signal) = end { Some(*signal) } else { None };
+        FailureKind::from_end(end).map(|failure| Self::Ended(failure, signal))
     }
 
     /// Returns the reason why a program is wrong on a scene. Returns `None` if the program is right, or if only
     /// round-off makes it wrong.
-    pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
-        let (fault, detail) = find_reason(scene, seen)?;
+    pub fn first_reason(scene: &Scene, observation: &Observation) -> Option<Self> {
+        let (fault, detail) = find_reason(scene, observation)?;
         let Some(detail) = detail else { return Some(fault) };
         let is_likely = |explanation: &Explanation| {
             explanation.is_not_finite()
                 || (explanation.is_about_program() && (explanation.is_complete() || explanation.names_stage()))
         };
-        let mut explanations = diagnose::explain(scene, &seen.trace).into_iter();
+        let mut explanations = diagnose::explain(scene, &observation.trace).into_iter();
         let likely = explanations.find(is_likely).map(|explanation| Self::Mistake(Box::new(explanation)));
         likely.or_else(|| is_clear_finding(detail).then_some(fault))
     }
@@ -59,27 +59,27 @@ impl WrongReason {
     /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
     /// is the named mistake, and not by a decision that round-off may change. With `is_only_reason`, the reason must be
     /// the first one that the scene shows, without other mistakes that have the same effect.
-    pub fn is_reproduced(&self, scene: &Scene, seen: &Observation, is_only_reason: bool) -> bool {
-        let Some((fault, detail)) = find_reason(scene, seen) else { return false };
+    pub fn is_reproduced(&self, scene: &Scene, observation: &Observation, is_only_reason: bool) -> bool {
+        let Some((fault, detail)) = find_reason(scene, observation) else { return false };
         match (self, detail) {
             (Self::Mistake(mistake), Some(FindingDetail::BeyondReach { .. })) if !mistake.is_not_finite() => false,
-            (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, seen, is_only_reason),
+            (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, observation, is_only_reason),
             (_, detail) => fault == *self && detail.is_none_or(is_clear_finding),
         }
     }
 }
 
 /// Returns whether the explanations of a wrong trace name a mistake, as the first one if that is requested.
-fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_only_reason: bool) -> bool {
+fn is_shown(mistake: &Explanation, scene: &Scene, observation: &Observation, is_only_reason: bool) -> bool {
     // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage without code.
     let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
     let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
     let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
     // Most attempts end here, long before every mistake of the catalogue has been tried.
-    if is_only_reason && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
+    if is_only_reason && !keys.is_empty() && !reproduces(scene, &observation.trace, &keys) {
         return false;
     }
-    let explanations = diagnose::explain(scene, &seen.trace);
+    let explanations = diagnose::explain(scene, &observation.trace);
     if is_only_reason {
         explanations.first().is_some_and(|first| first.statement() == mistake.statement())
     } else {
@@ -89,12 +89,12 @@ fn is_shown(mistake: &Explanation, scene: &Scene, seen: &Observation, is_only_re
 
 /// Returns the reason that needs no explanation, and the first finding of a trace that can be read. Returns `None` if
 /// nothing is wrong, or if round-off may be the cause.
-fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
-    if let Some(end) = WrongReason::from_end(&seen.ended) {
+fn find_reason(scene: &Scene, observation: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
+    if let Some(end) = WrongReason::from_end(&observation.ended) {
         return Some((end, None));
     }
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
-    let outcome = judge(scene, &seen.trace[..], &options, &mut ());
+    let outcome = judge(scene, &observation.trace[..], &options, &mut ());
     // A judgement that takes too much work stops as well, but this is not a fault of the trace.
     let is_unreadable = matches!(outcome.stop, Some(Stop::Trace { .. }));
     if is_unreadable || outcome.damage.is_some() || outcome.trailing_bytes {

@@ -112,7 +112,7 @@ fn require_complete<'a>(
 ) -> Result<(&'a ShardResult, PathBuf)> {
     let (place, first) = parts.first().context("the folders contain no shard")?;
     for (other, part) in parts {
-        if let Some(what) = first.common.difference(&part.common) {
+        if let Some(what) = first.common.describe_difference(&part.common) {
             bail!("{} and {} belong to different gradings: {what}", place.display(), other.display());
         }
     }

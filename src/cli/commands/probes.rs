@@ -279,11 +279,11 @@ fn make_absolute(program: &Path) -> PathBuf {
 }
 
 /// Describes how a program ended; `None` if it ended normally.
-pub(super) fn describe_end(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
-    match (ended, is_traceless) {
+pub(super) fn describe_end(end: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+    match (end, is_traceless) {
         (RunEnd::Exited(0), false) => None,
-        (ended, false) => Some(format!("the program {ended}")),
-        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", find_last_line(stderr))),
+        (end, false) => Some(format!("the program {end}")),
+        (end, true) => Some(format!("the program {end} and wrote no trace{}", find_last_line(stderr))),
     }
 }
 

@@ -46,7 +46,7 @@ pub(super) struct SharedInputs {
 
 impl SharedInputs {
     /// Describes the first difference between the inputs of two gradings; `None` if they are equal.
-    pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
+    pub(super) fn describe_difference(&self, other: &Self) -> Option<&'static str> {
         [
             (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
             (self.grader == other.grader, "the build of the grader differs"),
@@ -119,8 +119,8 @@ impl ShardResult {
 
 /// Returns the entries of a list that belong to a shard. Each shard gets every N-th entry, because neighbors in the
 /// list may have similar slow programs.
-fn select_own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
-    all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
+fn select_own<T>(number: usize, shards: usize, all: &[T]) -> impl Iterator<Item = &T> {
+    all.iter().skip(number.wrapping_sub(1)).step_by(shards.max(1))
 }
 
 /// A grading that grades only one shard.

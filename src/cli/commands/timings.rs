@@ -19,11 +19,11 @@ pub(super) fn print(timings: &Timings) {
     let rest = own.saturating_sub(rows[2..].iter().map(|(_, time)| *time).sum());
     rows.extend([("reports and the rest", rest), ("together", own + others)]);
     let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
-    table.heading(["processor time", "seconds", "ms a run"]);
+    table.add_heading(["processor time", "seconds", "ms a run"]);
     for (name, time) in rows {
         let seconds = time.as_secs_f64();
         let each = if runs == 0 { String::new() } else { format!("{:.2}", 1000.0 * seconds / f64::from(runs)) };
-        table.row([name.into(), format!("{seconds:.3}").into(), each.into()]);
+        table.add_row([name.into(), format!("{seconds:.3}").into(), each.into()]);
     }
     console::print_error(table.render(Style::Plain));
 }

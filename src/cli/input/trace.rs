@@ -149,7 +149,7 @@ const fn is_gzip(start: &[u8]) -> bool {
 }
 
 /// Returns a reader that decompresses, if the bytes begin like a zstd or a gzip file.
-fn open_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
+fn open_packed(mut reader: Box<dyn Read + Send>, is_required: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
@@ -159,7 +159,7 @@ fn open_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) 
         let decoder = flate2::read::MultiGzDecoder::new(Cursor::new(start).chain(reader));
         return Ok(Box::new(UnpackedReader { decoder, format: "gzip", failure: failure.clone() }));
     }
-    if must {
+    if is_required {
         bail!("the file is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
     }
     Ok(Box::new(Cursor::new(start).chain(reader)))

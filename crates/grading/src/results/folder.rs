@@ -45,12 +45,12 @@ struct Journal {
 }
 
 impl FolderResults {
-    /// Opens the journal in an existing folder, or creates it. With `fresh`, earlier results are discarded.
+    /// Opens the journal in an existing folder, or creates it. With `discards_old`, earlier results are discarded.
     ///
     /// # Errors
     ///
     /// Fails if another grader has locked the folder, or files can't be read or written.
-    pub fn open(folder: &Path, fresh: bool) -> io::Result<Self> {
+    pub fn open(folder: &Path, discards_old: bool) -> io::Result<Self> {
         let at = |name: &str| {
             let path = folder.join(name);
             move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
@@ -66,12 +66,12 @@ impl FolderResults {
         })?;
         let mut file = open_own_file(&opened, JOURNAL_NAME).map_err(at(JOURNAL_NAME))?;
         let metadata = file.metadata().map_err(at(JOURNAL_NAME))?;
-        if metadata.len() > MAX_JOURNAL_BYTES && !fresh {
+        if metadata.len() > MAX_JOURNAL_BYTES && !discards_old {
             let text = format!("the journal has more than {MAX_JOURNAL_BYTES} bytes; --fresh starts a new one");
             return Err(at(JOURNAL_NAME)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
-        let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL_NAME))? };
+        let sound = if discards_old { 0 } else { read(&file, &mut found).map_err(at(JOURNAL_NAME))? };
         if metadata.nlink() > 1 {
             // The journal has several names (hard links), because of a backup or a student. It is copied, so that the
             // file under the other name does not change.

@@ -52,29 +52,29 @@ fn judge_row(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, 
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 
-fn describe_reason(fair: &Judgement) -> String {
+fn describe_reason(judgement: &Judgement) -> String {
     let mut parts = Vec::new();
-    if let Some(refusal) = fair.refusal {
+    if let Some(refusal) = judgement.refusal {
         parts.push(format!("{refusal:?}"));
     }
-    if let Some(first) = fair.findings.first_divergence {
-        let kinds: Vec<String> = fair
+    if let Some(first) = judgement.findings.first_divergence {
+        let kinds: Vec<String> = judgement
             .findings
             .examples
             .iter()
-            .map(|f| format!("{} {}", fair.findings.counts.get(f.kind()), f.kind()))
+            .map(|f| format!("{} {}", judgement.findings.counts.get(f.kind()), f.kind()))
             .collect();
-        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), fair.findings.wrong_steps));
+        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), judgement.findings.wrong_steps));
     }
-    if let Some([low, high]) = fair.factor {
+    if let Some([low, high]) = judgement.factor {
         parts.push(format!("factor {low:.3e}..{high:.3e}"));
     }
-    if fair.borderline > 0 {
-        parts.push(format!("{} borderline", fair.borderline));
+    if judgement.borderline > 0 {
+        parts.push(format!("{} borderline", judgement.borderline));
     }
-    if fair.lost_decisions > 0 {
-        parts.push(format!("{} lost", fair.lost_decisions));
+    if judgement.lost_decisions > 0 {
+        parts.push(format!("{} lost", judgement.lost_decisions));
     }
-    parts.push(format!("{:?} {:.2?}", fair.form, fair.shares));
+    parts.push(format!("{:?} {:.2?}", judgement.form, judgement.shares));
     parts.join("; ")
 }

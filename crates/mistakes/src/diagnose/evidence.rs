@@ -106,9 +106,9 @@ impl Support<'_> {
     }
 }
 
-fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
+fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
-    for (number, trace) in open.iter().enumerate() {
+    for (number, trace) in traces.iter().enumerate() {
         for (place, symptom) in
             trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_about_program())
         {
@@ -137,9 +137,9 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         };
         evidence.is_known = row.is_some() || evidence.reported.is_some_and(is_named);
         let place = evidence.symptoms.first().copied();
-        let first = place.map(|(trace, place)| &open[trace].symptoms[place].explanation);
+        let first = place.map(|(trace, place)| &traces[trace].symptoms[place].explanation);
         let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
-        for trace in open {
+        for trace in traces {
             let reported = evidence.reported;
             let is_kin = |explanation: &&Explanation| {
                 trace.symptoms.iter().any(|other| other.explanation.key == explanation.key)
@@ -179,8 +179,8 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
 /// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
 /// mistakes of the catalogue come first, then the mistake that is more often the first explanation, then the earlier
 /// one.
-pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
-    let all = collect_evidence(open);
+pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
+    let all = collect_evidence(traces);
     let is_known = |word: &str| find(word).is_some();
     let is_likely = |(word, support): &(&&str, &Support<'_>)| {
         !support.is_denied() && (support.reported.is_some() || is_known(word))
@@ -199,24 +199,24 @@ pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
     let Some(reported) = best.reported else {
         let &(trace, place) = best.symptoms.first()?;
-        return Some(explain_by_row(&open[trace].symptoms[place].explanation, find(word)?, same_as));
+        return Some(explain_by_row(&traces[trace].symptoms[place].explanation, find(word)?, same_as));
     };
-    Some(Explanation { same_as, ..merge_explanations(reported, open) })
+    Some(Explanation { same_as, ..merge_explanations(reported, traces) })
 }
 
 /// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
 /// that all of them allow.
-fn merge_explanations(reported: &Explanation, open: &[OpenTrace]) -> Explanation {
+fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanation {
     let mut reported = reported.clone();
     let statement = reported.statement();
     // Nothing in a contradicting trace is reproduced.
-    let against = open.iter().filter(|trace| !trace.allows_statement(&statement)).flat_map(|trace| &trace.symptoms);
+    let against = traces.iter().filter(|trace| !trace.allows_statement(&statement)).flat_map(|trace| &trace.symptoms);
     reported.samples += against
         .filter(|symptom| contradicts(&symptom.explanation, &reported))
         .map(|symptom| symptom.explanation.samples)
         .sum::<u64>();
     let ExplanationTopic::Polynomials { subjects, found } = &mut reported.topic else { return reported };
-    let agreeing: Vec<&Symptom> = open
+    let agreeing: Vec<&Symptom> = traces
         .iter()
         .flat_map(|trace| &trace.symptoms)
         .filter(|symptom| symptom.allowed_statements.contains_key(&statement))

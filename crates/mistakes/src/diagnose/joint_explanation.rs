@@ -229,16 +229,16 @@ fn explain_wrong_polynomials(
 }
 
 /// Returns whether an explained trace also needs this known mistake.
-fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
+fn is_needed(next: &Explanation, traces: &[OpenTrace]) -> bool {
     let statement = next.statement();
-    open.iter().any(|trace| trace.is_covered && trace.requires_statement(&statement))
+    traces.iter().any(|trace| trace.is_covered && trace.requires_statement(&statement))
 }
 
 /// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
 /// polynomial and contact vector, and the symptoms of a stage may follow from a mistake reported for it or for an
 /// earlier stage.
-fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
-    let are_needed = is_needed(next, open);
+fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]) -> bool {
+    let are_needed = is_needed(next, traces);
     let subjects = next.subjects();
     let has_details = |explanation: &Explanation| {
         if are_needed && matches!(explanation.topic, ExplanationTopic::Mistake) {
@@ -273,22 +273,22 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
 }
 
 /// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
-fn drop_consequences(open: &mut Vec<OpenTrace>) {
+fn drop_consequences(traces: &mut Vec<OpenTrace>) {
     let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| {
         symptom.allowed_statements.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word))
     };
-    if open.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
-        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.names_stage()));
-        open.retain(|trace| !trace.symptoms.is_empty());
+    if traces.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
+        traces.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.names_stage()));
+        traces.retain(|trace| !trace.symptoms.is_empty());
     }
 }
 
 /// Keeps only the explanations of the earliest stage, because later faults may follow from it. Also drops known
 /// mistakes of that stage or a later one if they explain fewer traces than have a wrong stage: such mistakes only
 /// resemble the fault.
-fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
-    let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
+fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
+    let all = || traces.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |explanation: &Explanation| explanation.stage() == Some(earliest);
     let kind_of = |explanation: &Explanation| {
@@ -300,17 +300,17 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
         let shows = |trace: &&OpenTrace| {
             trace.symptoms.iter().any(|symptom| is_of_it(&symptom.explanation) && is_of_kind(&symptom.explanation))
         };
-        open.iter().filter(shows).count()
+        traces.iter().filter(shows).count()
     };
     let late = CATALOGUE.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
-    let explained = |row: &Row| open.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
+    let explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
     let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
     // If pairs are in another order or left out, the polynomials of one pair are in the place of another pair's.
     let is_misread = |explanation: &Explanation| find(&explanation.key).is_none() && explanation.stage().is_none();
     let has_order = all().any(Explanation::is_about_pairs);
-    for trace in open.iter_mut() {
+    for trace in traces.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
             symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));
             let one = &symptom.explanation;
@@ -318,7 +318,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
             !(is_weak || (has_details && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)
         });
     }
-    open.retain(|trace| !trace.symptoms.is_empty());
+    traces.retain(|trace| !trace.symptoms.is_empty());
 }
 
 /// Returns the stage of a step in which mistakes of an area are made, or `None` for polynomials and for the trace.
@@ -333,8 +333,8 @@ pub(super) const fn area_stage(area: Area) -> Option<StepStage> {
 }
 
 /// Returns whether enough traces suggest that the stage is empty.
-fn is_confirmed(open: &[OpenTrace], statement: &str) -> bool {
-    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(statement)).count() > 1
+fn is_confirmed(traces: &[OpenTrace], statement: &str) -> bool {
+    traces.len() < MANY_TRACES || traces.iter().filter(|trace| trace.allows_complete_statement(statement)).count() > 1
 }
 
 /// Returns whether enough traces suggest another mistake. One of these is enough:
@@ -342,10 +342,11 @@ fn is_confirmed(open: &[OpenTrace], statement: &str) -> bool {
 /// - A trace that is not explained yet suggests it.
 /// - A trace that is already explained needs it in addition to a reported mistake.
 /// - Two traces that are already explained suggest it, or one if there is no other trace.
-fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
+fn is_supported(traces: &[OpenTrace], next: &Explanation, found: &[Explanation]) -> bool {
     let statement = next.statement();
     let naming = |is_covered: bool| {
-        open.iter()
+        traces
+            .iter()
             .filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&statement))
             .count()
     };
@@ -353,19 +354,19 @@ fn is_supported(open: &[OpenTrace], next: &Explanation, found: &[Explanation]) -
     if next.names_stage() {
         return naming(false) > 1 && !next.is_vague();
     }
-    let is_partner = matches!(next.topic, ExplanationTopic::Mistake) && is_needed(next, open);
+    let is_partner = matches!(next.topic, ExplanationTopic::Mistake) && is_needed(next, traces);
     let is_formula = find(&next.key).is_none_or(|row| is_formula_area(row.area));
     // Among many traces, or if the mistake of a wrong stage is unknown, one trace may fit a known mistake by chance.
-    let may_be_chance = !is_formula && (open.len() >= MANY_TRACES || found.iter().any(Explanation::names_stage));
+    let may_be_chance = !is_formula && (traces.len() >= MANY_TRACES || found.iter().any(Explanation::names_stage));
     // Missing polynomials may follow from an earlier mistake.
     !next.reports_missing_polynomials()
-        && (naming(false) > usize::from(may_be_chance) || is_partner || naming(true) >= open.len().min(2))
+        && (naming(false) > usize::from(may_be_chance) || is_partner || naming(true) >= traces.len().min(2))
 }
 
 /// Removes everything that a mistake explains. If the mistake explains a trace, only the trace's other complete
 /// explanations are kept.
-fn remove_explained(open: &mut [OpenTrace], statement: &str) {
-    for trace in open.iter_mut().filter(|trace| trace.allows_statement(statement)) {
+fn remove_explained(traces: &mut [OpenTrace], statement: &str) {
+    for trace in traces.iter_mut().filter(|trace| trace.allows_statement(statement)) {
         trace.is_covered = true;
         trace
             .symptoms

@@ -13,7 +13,7 @@ pub(super) trait AttributeSource {
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
     /// Returns the index of a particle that the attribute `name` contains.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// Returns a number, or the default if there is one. `negative_effect` describes the unexpected effect of a negative value.
+    /// Returns a number, or the default if there is one. `negative_effect` describes what a negative number does.
     fn number(
         &mut self,
         name: &'static str,

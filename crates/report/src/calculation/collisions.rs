@@ -53,7 +53,7 @@ impl<'a> CollisionWalk<'a> {
         if pass.stage == Stage::Simple {
             let study = &OverlapCheck::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
             let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
-            return Some(format!("{}:\n{}\n", PairText(pair), report.body(format_short, Style::Plain)));
+            return Some(format!("{}:\n{}\n", PairText(pair), report.render_body(format_short, Style::Plain)));
         }
         let motion = &PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let computation = DetectReport { study: &Study::for_motion(motion).ok()?, place: None }

@@ -1,5 +1,5 @@
 //! Counts the polynomials that differ only because their input positions are wrong.
-use crate::number::count as number;
+use crate::number::group_digits as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
 /// The kinds of findings that are faults of a formula, and not of its input positions.

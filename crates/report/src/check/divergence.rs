@@ -81,12 +81,12 @@ impl ComparedValues {
         let lines = |lines: &[String]| lines.iter().map(|line| format!("  {line}\n")).collect::<String>();
         let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Left]);
         if !self.rows.is_empty() {
-            table.heading(["", "expected", "actual", ""]);
+            table.add_heading(["", "expected", "actual", ""]);
         }
         for Row { name, expected, actual, differs } in &self.rows {
             let mark = |text: String| if *differs { Cell::with_style(TextStyle::Wrong, text) } else { text.into() };
             let word = if *differs { "<- differs" } else { "" };
-            table.row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
+            table.add_row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
         }
         lines(&self.remarks_before)
             + &table.render(style)

@@ -1,6 +1,6 @@
 //! The section about the fair rules in the text of the check report.
 use super::super::{
-    number::{count, format_g},
+    number::{format_g, group_digits},
     step_share,
     style::{Style, TextStyle},
     table::{Align, Table},
@@ -38,7 +38,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         let (verb, plural) = if fair.borderline == 1 { ("was", "") } else { ("were", "s") };
         line(format!(
             "{} decision{plural} that round-off or small coefficients may flip {verb} accepted as in the trace",
-            count(fair.borderline)
+            group_digits(fair.borderline)
         ));
         for decision in &fair.borderline_examples {
             let word = if decision.collides { "collides" } else { "does not collide" };
@@ -47,7 +47,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         }
         let more = fair.borderline - fair.borderline_examples.len() as u64;
         if more > 0 {
-            line(format!("  and {} more", count(more)));
+            line(format!("  and {} more", group_digits(more)));
         }
     }
     if !fair.findings.examples.is_empty() {
@@ -63,17 +63,21 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
 /// Lists the kinds of findings of a rule book, each with its first example.
 pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
-    table.heading(["kind", "count", "first example"]);
+    table.add_heading(["kind", "count", "first example"]);
     for example in &found.examples {
         let kind = example.kind();
-        table.row([kind.to_string().into(), count(found.counts.get(kind)).into(), example.to_string().into()]);
+        table.add_row([
+            kind.to_string().into(),
+            group_digits(found.counts.get(kind)).into(),
+            example.to_string().into(),
+        ]);
     }
     table.render(style)
 }
 
 /// Returns the text of the verdict and its style.
-pub(super) const fn verdict(fair: &Judgement) -> (TextStyle, &'static str) {
-    match fair.verdict {
+pub(super) const fn verdict(judgement: &Judgement) -> (TextStyle, &'static str) {
+    match judgement.verdict {
         FairVerdict::Accepted => (TextStyle::Right, "accepted"),
         FairVerdict::Rejected => (TextStyle::Wrong, "rejected"),
         FairVerdict::None => (TextStyle::Notice, "undecided"),
@@ -81,8 +85,8 @@ pub(super) const fn verdict(fair: &Judgement) -> (TextStyle, &'static str) {
 }
 
 /// Returns the reason for the fair verdict, in one line.
-pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
-    let refusal = match fair.refusal {
+pub(super) fn summarize(judgement: &Judgement, outcome: &Outcome) -> String {
+    let refusal = match judgement.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),
         Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
@@ -91,32 +95,32 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
         }
         None => None,
     };
-    let found = fair.findings.first_divergence.as_ref().map(|first| {
-        let wrong = match fair.findings.wrong_steps {
+    let found = judgement.findings.first_divergence.as_ref().map(|first| {
+        let wrong = match judgement.findings.wrong_steps {
             0 => "the first record is wrong".to_owned(),
-            many => step_share::describe_wrong(many, outcome.steps, count),
+            many => step_share::describe_wrong(many, outcome.steps, group_digits),
         };
         let first = match first.step {
-            0 if fair.findings.wrong_steps == 0 => String::new(),
+            0 if judgement.findings.wrong_steps == 0 => String::new(),
             0 => ", and the first record is also wrong".to_owned(),
             _ if outcome.steps == 1 => String::new(),
             step => format!(", the first is step {step}"),
         };
         wrong + &first
     });
-    let given_up = fair.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
-    let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
+    let given_up = judgement.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
+    let nothing = (judgement.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
-        parts if parts.is_empty() => step_share::describe_right_steps(outcome.steps, count),
+        parts if parts.is_empty() => step_share::describe_right_steps(outcome.steps, group_digits),
         parts => parts.join("; "),
     }
 }
 
 /// Returns how much of each tolerance was used, such as `coefficients 12 %, positions 3 %`. Tolerances that were not
 /// used are left out.
-fn describe_shares(fair: &Judgement) -> Option<String> {
-    let shares = fair.shares;
+fn describe_shares(judgement: &Judgement) -> Option<String> {
+    let shares = judgement.shares;
     let list: Vec<String> = [
         ("coefficients", shares.coefficient),
         ("normals", shares.normal),

@@ -1,7 +1,7 @@
 //! The wrong steps of a trace, one by one. They are collected while the trace is judged, and shown with expected and
 //! actual values.
 use super::super::{
-    number::{count, format_count},
+    number::{format_count, group_digits},
     style::{Style, TextStyle},
 };
 use super::{Check, divergence, fair_view::CountedView};
@@ -200,7 +200,7 @@ fn render_step(check: &Check<'_>, step: &Step, style: Style) -> String {
         text += &divergence::render_finding(finding, style);
         match step.further_counts.get(finding.kind()) {
             0 => {}
-            more => text += &format!("  and {} more of this kind ({})\n", count(more), finding.kind()),
+            more => text += &format!("  and {} more of this kind ({})\n", group_digits(more), finding.kind()),
         }
     }
     text

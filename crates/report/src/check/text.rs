@@ -2,7 +2,7 @@
 use super::{
     super::{
         explain,
-        number::{count, format_count, format_g},
+        number::{format_count, format_g, group_digits},
         step_share,
         style::{Style, TextStyle},
         table::{Align, Cell, Table},
@@ -109,11 +109,11 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     if let Some(question) = check.explanations.iter().find(|explanation| explanation.is_other_scene()) {
         return words::explanation::describe(question);
     }
-    let steps = count(u64::from(outcome.steps));
+    let steps = group_digits(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no steps, so no step can be wrong".to_owned(),
         Overall::Passed => {
-            format!("{} by the original's rules", step_share::describe_right_steps(outcome.steps, count))
+            format!("{} by the original's rules", step_share::describe_right_steps(outcome.steps, group_digits))
         }
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
@@ -122,10 +122,10 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
         Overall::Failed => {
             let first = outcome.parity.findings.first_divergence.map_or(0, |finding| finding.step);
             let first = if outcome.steps == 1 { String::new() } else { format!(", the first is step {first}") };
-            step_share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
+            step_share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, group_digits) + &first
         }
         Overall::None => {
-            let judged = count(u64::from(outcome.steps_judged_by(Book::Parity)));
+            let judged = group_digits(u64::from(outcome.steps_judged_by(Book::Parity)));
             let end = match &outcome.stop_by(Book::Parity) {
                 Some(stop) if is_limit(stop) => "a limit of this program ended judging",
                 Some(Stop::Step(_)) => "the original would not terminate",
@@ -156,13 +156,13 @@ fn describe_damage(outcome: &Outcome) -> String {
             let verb = if wrong == 1 { "is" } else { "are" };
             format!(
                 "{place}; {} of the {} steps before it {verb} wrong, the first is step {}",
-                count(wrong),
-                count(before),
+                group_digits(wrong),
+                group_digits(before),
                 first.step
             )
         }
         (1, ..) => format!("{place}; the step before it is right"),
-        _ => format!("{place}; the {} steps before it are right", count(before)),
+        _ => format!("{place}; the {} steps before it are right", group_digits(before)),
     }
 }
 
@@ -220,10 +220,10 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
     let names = ["accumulated position", "accumulated velocity", "maximum position", "maximum velocity"];
     let judged = outcome.parity.overall != Overall::None;
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
-    table.heading(["residual", "value", "tolerance", "used", ""]);
+    table.add_heading(["residual", "value", "tolerance", "used", ""]);
     for (name, (value, bound)) in names.into_iter().zip(outcome.parity.residuals.with_bounds()) {
         let verdict = if judged { new_pass_cell(value < bound) } else { "".into() };
-        table.row([
+        table.add_row([
             name.into(),
             format_g(value).into(),
             format_g(bound).into(),
@@ -232,8 +232,8 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
         ]);
     }
     let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), new_pass_cell);
-    let wrong = count(outcome.parity.findings.counts.collisions());
-    table.row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
+    let wrong = group_digits(outcome.parity.findings.counts.collisions());
+    table.add_row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
     format!("{}\n{}", style.paint(TextStyle::Strong, "Rules of the original (parity)"), table.render(style))
 }
 
@@ -261,7 +261,7 @@ fn format_share(value: f64, bound: f64) -> String {
 
 fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let heading =
-        format!("Findings: {} in {}", count(account.counts.total()), format_count(account.wrong_steps, "step"));
+        format!("Findings: {} in {}", group_digits(account.counts.total()), format_count(account.wrong_steps, "step"));
     let mut text = format!("{}\n{}", style.paint(TextStyle::Strong, &heading), fair::describe_kinds(account, style));
     if follow > 0 {
         text += &format!("  among them {}\n", consequences::describe_consequences(follow));
@@ -287,8 +287,8 @@ pub(crate) fn list_notes(check: &Check<'_>) -> Vec<String> {
     }
     if check.audit {
         let searches = outcome.searches;
-        let (calls, searched) = (count(searches.calls), count(searches.searched));
-        let (excluded, disagreements) = (count(searches.excluded), count(searches.disagreements));
+        let (calls, searched) = (group_digits(searches.calls), group_digits(searches.searched));
+        let (excluded, disagreements) = (group_digits(searches.excluded), group_digits(searches.disagreements));
         notes.push(format!(
             "audit: {calls} detection calls, {searched} root searches, {excluded} excluded by a certificate, \
              {disagreements} disagreements"

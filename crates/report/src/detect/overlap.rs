@@ -1,5 +1,5 @@
 //! The report on a decision of simple collision handling: the overlap, the approach, and the result.
-use super::{AnswerView, DETECT_SCHEMA, DetectView, FormatFn, PlaceView, render_motion, title};
+use super::{AnswerView, DETECT_SCHEMA, DetectView, FormatFn, PlaceView, render_motion, write_title};
 use crate::{
     number::format_exact,
     style::{Style, TextStyle},
@@ -30,13 +30,13 @@ pub struct Overlap<'a> {
 impl Overlap<'_> {
     /// Renders the report as text.
     pub fn render_text(&self, style: Style) -> String {
-        style.paint(TextStyle::Strong, &title(self.pair, self.step, self.trace, self.scene))
+        style.paint(TextStyle::Strong, &write_title(self.pair, self.step, self.trace, self.scene))
             + "\n"
-            + &self.body(format_exact, style)
+            + &self.render_body(format_exact, style)
     }
 
     /// Renders the report without its title. `number` formats numbers.
-    pub(crate) fn body(&self, number: FormatFn, style: Style) -> String {
+    pub(crate) fn render_body(&self, number: FormatFn, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(TextStyle::Strong, words));
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));

@@ -27,7 +27,7 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
         for (scene, share) in scenes.iter().take(max_rows) {
             let percent = 100.0 * share.accepted as f64 / share.run.max(1) as f64;
-            table.row([
+            table.add_row([
                 format!("{} of {}", share.accepted, share.run).into(),
                 format!("{percent:.0} %").into(),
                 to_one_line(scene).into(),
@@ -47,7 +47,7 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
         let mut table = Table::new([Align::Right, Align::Left]);
         for SharedMistake { mistake, members } in mistakes.iter().take(max_rows) {
             let what = describe_likely(&grades[members[0]], mistake);
-            table.row([format_count(members.len() as u64, "submission").into(), to_one_line(&what).into()]);
+            table.add_row([format_count(members.len() as u64, "submission").into(), to_one_line(&what).into()]);
         }
         text += &table.render(style);
     }

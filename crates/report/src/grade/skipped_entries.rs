@@ -23,7 +23,7 @@ pub fn list_not_graded(grades: &[Grade], skipped_entries: &[SkippedEntry], style
     }
     let mut table = Table::new([Align::Left, Align::Left]);
     for SkippedEntry { name, reason: why } in skipped_entries {
-        table.row([shorten_name(&to_one_line(name)).into(), to_one_line(why).into()]);
+        table.add_row([shorten_name(&to_one_line(name)).into(), to_one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(TextStyle::Strong, "Not graded"), table.render(style))
 }

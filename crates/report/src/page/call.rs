@@ -17,7 +17,7 @@ use fosssim_render::{
 };
 
 /// Renders a detection call below its name. It is unfolded if `open`.
-pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
+pub(super) fn render_call(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let (pair, pass) = (PairText(call.pair), PassText(call.pass));
     render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
@@ -84,7 +84,7 @@ impl CallContent<'_> {
 
 /// Describes the decision that follows from the expected polynomials.
 fn describe_decision(study: &Study) -> String {
-    DetectReport { study, place: None }.decision(format_g)
+    DetectReport { study, place: None }.describe_decision(format_g)
 }
 
 /// Returns whether a curve has a zero within the step. Without a zero, a plot shows only the signs, which one sentence

@@ -74,7 +74,7 @@ impl Card {
     }
 
     /// Returns the card's HTML with the mistakes inserted. `key` makes the element IDs unique on the page.
-    pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
+    pub(super) fn render_with_mistakes(&self, key: &str, mistakes: &str) -> String {
         let html = self.html.replace(KEY_PLACEHOLDER, key);
         if html.contains(CAUSE_MARK) { html.replace(CAUSE_MARK, mistakes) } else { mistakes.to_owned() + &html }
     }

@@ -16,7 +16,7 @@ use crate::{
     },
     describe::pair_key,
     explain::ExplanationParts,
-    number::count,
+    number::group_digits,
     style::{Style, TextStyle},
 };
 use askama::Template;
@@ -41,12 +41,12 @@ type StepCall<'e> = (u32, &'e InspectedCall);
 
 impl Case<'_> {
     /// Renders a page about one case. `title` is the title of the browser's window.
-    pub(super) fn page(&self, title: &str) -> String {
-        render_document(title, &self.html("0"), script())
+    pub(super) fn render_page(&self, title: &str) -> String {
+        render_document(title, &self.render_content("0"), script())
     }
 
     /// Renders the case as the whole content of a page.
-    fn html(&self, key: &str) -> String {
+    fn render_content(&self, key: &str) -> String {
         let check = &self.check;
         let verdict_class = match (check.is_accepted(), check.difference()) {
             (true, None) => "good",
@@ -148,7 +148,7 @@ impl TraceContent<'_> {
     /// Renders the first calls of a list. If `open`, the first one is unfolded.
     fn render_first_calls(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call = |(number, (step, call)): (usize, &StepCall<'_>)| {
-            call::html(*step, call, self.depth + 2, open && number == 0)
+            call::render_call(*step, call, self.depth + 2, open && number == 0)
         };
         let mut out: String = calls.iter().take(MAX_CALLS).enumerate().map(call).collect();
         if calls.len() > MAX_CALLS {

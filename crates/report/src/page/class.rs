@@ -244,7 +244,7 @@ fn submission_state(grade: &Grade) -> &'static str {
 /// Returns one letter for each of a submission's scenes.
 fn scene_letters(grade: &Grade) -> String {
     let letters = grade.groups.iter().map(|group| group.scenes.iter().map(scene_letter).collect::<String>());
-    heat::html(&letters.collect::<Vec<_>>().join("|"))
+    heat::render_cells(&letters.collect::<Vec<_>>().join("|"))
 }
 
 /// Returns the letter for a scene: accepted, wrong, not run, or without a trace that can be judged.
@@ -295,7 +295,7 @@ fn group_by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
 /// Renders a histogram of the shares of points, for the submissions that were run.
 fn render_bars(grades: &[Grade]) -> String {
     let ran = grades.iter().filter(|grade| !has_never_run(grade));
-    histogram::html(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
+    histogram::render_histogram(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
 #[cfg(test)]

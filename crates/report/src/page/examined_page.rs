@@ -31,5 +31,5 @@ pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &
     let what_if = check.explanations.first().and_then(|first| MistakeRun::for_scene(scene, first, trace, evidence));
     let title = format!("{}: {}", check.verdict(), check.scene);
     let (evidence, what_if) = (Some(evidence), what_if.as_ref());
-    Case { check, scene, evidence, mistake_run: what_if, hints: Hints::Full, has_trace: true }.page(&title)
+    Case { check, scene, evidence, mistake_run: what_if, hints: Hints::Full, has_trace: true }.render_page(&title)
 }

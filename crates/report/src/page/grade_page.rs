@@ -228,9 +228,9 @@ impl<'a> Article<'a> {
             (None, _) => mistakes,
             (Some(card), CardDetail::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
             (Some(card), CardDetail::Pictures) if card.sizes().1 > 0 => {
-                no_room("the motion") + &card.html(&key, &mistakes)
+                no_room("the motion") + &card.render_with_mistakes(&key, &mistakes)
             }
-            (Some(card), _) => card.html(&key, &mistakes),
+            (Some(card), _) => card.render_with_mistakes(&key, &mistakes),
         };
         let motion = match (card, room) {
             (Some(card), CardDetail::Exact) => card.data(&key),

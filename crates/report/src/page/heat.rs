@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// Renders a row of cells from one letter per scene, with `|` between groups. The letters are `r` for accepted, `w` for
 /// wrong, `e` for a scene without a trace that can be judged, and `n` for a scene that was not run.
-pub(super) fn html(letters: &str) -> String {
+pub(super) fn render_cells(letters: &str) -> String {
     let scenes = letters.replace('|', "");
     let words = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
     let mut svg = format!(

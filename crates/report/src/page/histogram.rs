@@ -8,7 +8,7 @@ const BAR_COUNT: usize = 10;
 const MAX_BAR_HEIGHT: usize = 108;
 
 /// Renders a histogram of the shares of points, which are between 0 and 1. Without shares, the result is empty.
-pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
+pub(super) fn render_histogram(shares: impl Iterator<Item = f64>) -> String {
     let mut counts = [0_usize; BAR_COUNT];
     for share in shares.filter(|share| share.is_finite()) {
         // A share belongs to the last bar that begins at or below it, and a share of 1 to the last bar.

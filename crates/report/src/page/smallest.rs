@@ -10,7 +10,7 @@ pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number:
     let key = format!("small-{number}");
     let most_likely = &small.explanations[..small.explanations.len().min(1)];
     let mistakes = mistakes(most_likely, card.is_some_and(Card::has_values), None);
-    let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
+    let shown = card.map_or_else(|| mistakes.clone(), |card| card.render_with_mistakes(&key, &mistakes));
     render_template(&SmallestContent { small, card, number, key: &key, shown })
 }
 

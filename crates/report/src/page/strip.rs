@@ -11,7 +11,7 @@ const HEIGHT: f64 = 26.0;
 const MAX_COLUMNS: usize = 480;
 
 /// Renders the strip, and a text with the number of steps of each kind.
-pub(super) fn html(steps: &[Step]) -> String {
+pub(super) fn render_strip(steps: &[Step]) -> String {
     let count = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(
         "{} right, {} wrong by themselves, {} right but starting from a wrong state{}",
@@ -68,9 +68,9 @@ mod tests {
         let step = |class| Step { class, position: 0.0, velocity: 0.0, expected_passes: 1, actual_passes: Some(1) };
         let mut steps = vec![step(StepClass::Right); 100_000];
         steps[77_777] = step(StepClass::Wrong);
-        let html = html(&steps);
+        let html = render_strip(&steps);
         assert!(html.len() < 1500 && html.matches("is-w").count() == 1, "{html}");
         assert!(html.contains("99999 right, 1 wrong by themselves, 0 right but"), "{html}");
-        assert!(super::html(&[]).contains("0 right"));
+        assert!(super::render_strip(&[]).contains("0 right"));
     }
 }

@@ -34,7 +34,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let check = check_of(scene_name, trace_name, &outcome, &explanations);
-    Case { check, scene, evidence: Some(&evidence), mistake_run: None, hints, has_trace: true }.page(trace_name)
+    Case { check, scene, evidence: Some(&evidence), mistake_run: None, hints, has_trace: true }.render_page(trace_name)
 }
 
 fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
@@ -124,7 +124,7 @@ fn a_page_about_no_trace_has_no_verdicts_of_books() {
         replay::judge(&scene, &b""[..], &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
     let check = Check { other_file_kind: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
     let case = Case { check, scene: &scene, evidence: None, mistake_run: None, hints: Hints::Full, has_trace: true };
-    let html = case.page("mine.bin");
+    let html = case.render_page("mine.bin");
     assert!(html.contains("is not a trace: it is empty") && !html.contains("fair rules"), "{html}");
 }
 

@@ -74,13 +74,13 @@ impl ShownStep<'_> {
         }
         let frame = &record.frame;
         let mut table = Table::new([Align::Right; 5]);
-        table.heading(["particle", "x", "y", "vx", "vy"]);
+        table.add_heading(["particle", "x", "y", "vx", "vy"]);
         let pairs = frame.state.positions.chunks(2).zip(frame.state.velocities.chunks(2));
         for (particle, (position, velocity)) in pairs.enumerate() {
             let cell =
                 |values: &[f64], axis: usize| values.get(axis).copied().map(format_exact).unwrap_or_default().into();
             let (x, y) = (cell(position, 0), cell(position, 1));
-            table.row([particle.to_string().into(), x, y, cell(velocity, 0), cell(velocity, 1)]);
+            table.add_row([particle.to_string().into(), x, y, cell(velocity, 0), cell(velocity, 1)]);
         }
         text += &table.render(style);
         text += &format!("  impulses: {}\n", frame.impulses.len());

@@ -53,8 +53,8 @@ pub(super) struct ExpectedEnd {
 
 impl ExpectedEnd {
     /// Returns whether the run ended in this way.
-    pub(super) fn matches(&self, ended: &RunEnd) -> bool {
-        let detail = match ended {
+    pub(super) fn matches(&self, end: &RunEnd) -> bool {
+        let detail = match end {
             RunEnd::Exited(code) => code.to_string(),
             RunEnd::Signalled(signal) => signal.to_string(),
             // Usually the forbidden call is named. If calls cannot be named on this host, any violation is accepted.
@@ -62,7 +62,7 @@ impl ExpectedEnd {
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),
         };
-        self.kind == ended.kind() && self.detail.as_ref().is_none_or(|expected| *expected == detail)
+        self.kind == end.kind() && self.detail.as_ref().is_none_or(|expected| *expected == detail)
     }
 }
 

@@ -30,7 +30,7 @@ type DecoyFacts = [i64; 7];
 
 impl DecoyState {
     /// Returns the first path whose state differs; `None` if the states are equal.
-    pub(super) fn difference(&self, after: &Self) -> Option<String> {
+    pub(super) fn find_difference(&self, after: &Self) -> Option<String> {
         let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
         let added = || after.0.keys().find(|path| !self.0.contains_key(*path));
         changed.or_else(added).map(|path| path.display().to_string())
@@ -155,13 +155,16 @@ mod tests {
         let mut decoy = Decoy::set_up(&folder.path().join("run")).unwrap();
         let reference = folder.path().join("run/secrets/reference.bin");
         let before = decoy.state().unwrap();
-        assert_eq!(before.difference(&decoy.state().unwrap()), None);
+        assert_eq!(before.find_difference(&decoy.state().unwrap()), None);
         std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o600)).unwrap();
         std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o644)).unwrap();
-        assert!(before.difference(&decoy.state().unwrap()).unwrap().ends_with("reference.bin"), "even when undone");
+        assert!(
+            before.find_difference(&decoy.state().unwrap()).unwrap().ends_with("reference.bin"),
+            "even when undone"
+        );
         let before = decoy.state().unwrap();
         std::fs::write(folder.path().join("run/neighbor/planted"), "x").unwrap();
-        assert!(before.difference(&decoy.state().unwrap()).is_some());
+        assert!(before.find_difference(&decoy.state().unwrap()).is_some());
         let secret = std::fs::read(&reference).unwrap();
         assert!(decoy.contains_secret(&[b"it is ", &secret[..]].concat()) && !decoy.contains_secret(b"it is"));
         assert!(decoy.is_alive());

@@ -229,7 +229,7 @@ impl TestSetup<'_> {
             return Err(broken("the attack killed another process".into()));
         }
         let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
-        if let Some(difference) = before.difference(&after) {
+        if let Some(difference) = before.find_difference(&after) {
             return Err(broken(format!("the attack changed the host: {difference}")));
         }
         check_left_trace(attack, &folder).map_err(broken)?;

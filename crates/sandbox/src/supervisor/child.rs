@@ -99,7 +99,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
     }
-    let strings = (arguments(plan), environment(&plan.order));
+    let strings = (build_arguments(plan), build_environment(&plan.order));
     let strings = match strings {
         (Ok(arguments), Ok(environment)) => (arguments, environment),
         _ => return Err(Failure { stage: "pass text with a NUL byte".into(), errno: libc::EINVAL }),
@@ -244,7 +244,7 @@ fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]
     }
 }
 
-fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
+fn build_arguments(plan: &ChildPlan) -> io::Result<Strings> {
     let order = &plan.order;
     let script = script_by_descriptor(plan).map(|script| format!("/proc/self/fd/{}", script.file.as_raw_fd()).into());
     let program = script.unwrap_or_else(|| order.program.clone());
@@ -260,7 +260,7 @@ fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
 }
 
 /// Returns the environment variables that every program gets, followed by those of the job.
-fn environment(order: &RunOrder) -> io::Result<Strings> {
+fn build_environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
     // If the sandbox's user cannot enter a parent of the folder, the folder is used as the current folder.
     let home = if sys::is_accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) {
@@ -326,8 +326,8 @@ impl OpenedFile {
         Ok(Self { file: again.into(), is_copy: true })
     }
 
-    /// Returns the file under a descriptor number that is at least `least`.
-    pub(super) fn with_min_number(&self, least: u32) -> io::Result<OwnedFd> {
-        sys::duplicate_from(self.file.as_fd(), least)
+    /// Returns the file under a descriptor number that is at least `min`.
+    pub(super) fn with_min_number(&self, min: u32) -> io::Result<OwnedFd> {
+        sys::duplicate_from(self.file.as_fd(), min)
     }
 }

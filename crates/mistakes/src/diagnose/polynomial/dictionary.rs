@@ -70,7 +70,7 @@ impl Dictionary {
     }
 
     /// Returns the two letters of a product, as separate products, or `None` for products of another length.
-    pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
+    pub fn find_factors(&self, product: usize) -> Option<[usize; 2]> {
         let &[one, two] = &self.products[product].letters[..] else { return None };
         let find_letter = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
         Some([find_letter(one)?, find_letter(two)?])

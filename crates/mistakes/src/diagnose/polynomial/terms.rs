@@ -225,7 +225,7 @@ impl<'a> TermFit<'a> {
     fn find_lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let sums = (0..self.dictionary.products.len()).filter_map(|product| {
             let weight = self.dictionary.weight(self.formula, power, product);
-            let letters = self.dictionary.factors(product)?;
+            let letters = self.dictionary.find_factors(product)?;
             (weight != 0.0).then(|| vec![(product, -weight), (letters[0], weight), (letters[1], weight)])
         });
         sums.filter(|sum| self.explains_all(power, &CoefficientEdit::Terms(sum.clone())))

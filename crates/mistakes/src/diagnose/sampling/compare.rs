@@ -144,9 +144,13 @@ impl From<Record> for LoggedNumbers {
 
 /// Returns the first difference in the order of a step's computation, or `None` if the records are equal up to
 /// round-off.
-pub fn find_first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
+pub fn find_first_difference(
+    expected: &StepRecords,
+    actual: &StepRecords,
+    tolerance: &Tolerance,
+) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
-    let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !polynomial_matches(ours, theirs, by));
+    let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !polynomial_matches(ours, theirs, tolerance));
     if let Some(index) = wrong {
         return Some(StepDifference::Polynomial(index));
     }
@@ -154,20 +158,20 @@ pub fn find_first_difference(expected: &StepRecords, actual: &StepRecords, by: &
         return Some(StepDifference::PolynomialCount);
     }
     if let (Some(ours), Some(theirs)) = (&expected.mid, &actual.mid)
-        && let Some(particle) = find_state_difference(&ours.state, &theirs.state, by)
+        && let Some(particle) = find_state_difference(&ours.state, &theirs.state, tolerance)
     {
         return Some(StepDifference::MidState(particle));
     }
-    if !impulses_match(&expected.end.impulses, &actual.end.impulses, by) {
+    if !impulses_match(&expected.end.impulses, &actual.end.impulses, tolerance) {
         return Some(StepDifference::Impulses);
     }
-    if let Some(particle) = find_state_difference(&expected.end.state, &actual.end.state, by) {
+    if let Some(particle) = find_state_difference(&expected.end.state, &actual.end.state, tolerance) {
         return Some(StepDifference::EndState(particle));
     }
     let same_mid = match (&expected.mid, &actual.mid) {
         (Some(ours), Some(theirs)) => {
-            impulses_match(&ours.impulses, &theirs.impulses, by)
-                && polynomials_match(&ours.polynomials, &theirs.polynomials, by)
+            impulses_match(&ours.impulses, &theirs.impulses, tolerance)
+                && polynomials_match(&ours.polynomials, &theirs.polynomials, tolerance)
         }
         (ours, theirs) => ours.is_none() == theirs.is_none(),
     };
@@ -175,15 +179,15 @@ pub fn find_first_difference(expected: &StepRecords, actual: &StepRecords, by: &
 }
 
 /// Returns whether two lists contain the same polynomials in the same order.
-pub fn polynomials_match(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
+pub fn polynomials_match(ours: &PolynomialLog, theirs: &PolynomialLog, tolerance: &Tolerance) -> bool {
     ours.len() == theirs.len()
-        && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| polynomial_matches(ours, theirs, by))
+        && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| polynomial_matches(ours, theirs, tolerance))
 }
 
 /// Returns whether one polynomial is a positive multiple of the other (both with the highest power first and without
 /// small leading coefficients).
-pub fn polynomial_matches(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
-    if is_multiple(expected, actual, 1.0, by) {
+pub fn polynomial_matches(expected: &[f64], actual: &[f64], tolerance: &Tolerance) -> bool {
+    if is_multiple(expected, actual, 1.0, tolerance) {
         return true;
     }
     let length = expected.len().max(actual.len());
@@ -191,17 +195,17 @@ pub fn polynomial_matches(expected: &[f64], actual: &[f64], by: &Tolerance) -> b
         (0..length).map(|power| coefficient_of_power(a, power) * coefficient_of_power(b, power)).sum()
     };
     let factor = dot(actual, expected) / dot(expected, expected);
-    factor > 0.0 && factor.is_finite() && is_multiple(expected, actual, factor, by)
+    factor > 0.0 && factor.is_finite() && is_multiple(expected, actual, factor, tolerance)
 }
 
 /// Returns whether two polynomials are equal, for formulas whose coefficients were not dropped.
-pub fn formula_matches(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -> bool {
+pub fn formula_matches(expected: &[BoundedValue], actual: &[f64], tolerance: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
-    polynomial_matches(trim(&values), actual, by)
+    polynomial_matches(trim(&values), actual, tolerance)
 }
 
 /// Returns whether `actual` is `factor * expected`.
-fn is_multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bool {
+fn is_multiple(expected: &[f64], actual: &[f64], factor: f64, tolerance: &Tolerance) -> bool {
     let largest = expected.iter().fold(0.0_f64, |largest, c| largest.max((factor * c).abs()));
     let length = expected.len().max(actual.len());
     (0..length).all(|power| {
@@ -209,7 +213,7 @@ fn is_multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) ->
         // A coefficient that was dropped on one side is at most as large as the limit for dropping.
         let dropped =
             if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED_COEFFICIENT * factor.max(1.0) };
-        number_matches(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
+        number_matches(e, a, tolerance.coefficient * e.abs() + tolerance.floor * largest + dropped)
     })
 }
 
@@ -219,11 +223,11 @@ fn coefficient_of_power(coefficients: &[f64], power: usize) -> f64 {
 }
 
 /// Returns whether two lists contain the same contacts in any order.
-fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
+fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], tolerance: &Tolerance) -> bool {
     if ours.len() != theirs.len() {
         return false;
     }
-    let is_match = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| impulse_matches(ours, theirs, by);
+    let is_match = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| impulse_matches(ours, theirs, tolerance);
     if ours.iter().zip(theirs).all(is_match) {
         return true;
     }
@@ -236,12 +240,12 @@ fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleran
 }
 
 /// Returns whether two contacts are equal up to round-off.
-pub fn impulse_matches(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
-    let within = by.normal * (1.0 + largest_component(ours.normal));
+pub fn impulse_matches(ours: &LoggedImpulse, theirs: &LoggedImpulse, tolerance: &Tolerance) -> bool {
+    let within = tolerance.normal * (1.0 + largest_component(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
         && number_matches(ours.normal.x, theirs.normal.x, within)
         && number_matches(ours.normal.y, theirs.normal.y, within)
-        && number_matches(ours.time, theirs.time, by.time)
+        && number_matches(ours.time, theirs.time, tolerance.time)
 }
 
 fn largest_component(v: Vec2) -> f64 {
@@ -249,10 +253,10 @@ fn largest_component(v: Vec2) -> f64 {
 }
 
 /// Returns the first particle whose position or velocity differs.
-pub fn find_state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
+pub fn find_state_difference(ours: &State, theirs: &State, tolerance: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));
-        let within = by.state * (1.0 + largest);
+        let within = tolerance.state * (1.0 + largest);
         let index = ours.iter().zip(theirs).position(|(&ours, &theirs)| !number_matches(ours, theirs, within));
         index.map(|index| index / 2)
     };

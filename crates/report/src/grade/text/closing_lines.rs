@@ -82,7 +82,7 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
         let name = to_one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
         let score = format!("{} of {}{extra}", format_optional_points(group.points), format_points(group.max_points));
-        table.row([
+        table.add_row([
             name.into(),
             score.into(),
             Cell::with_style(verdict_style(group.verdict), group.verdict.code()),

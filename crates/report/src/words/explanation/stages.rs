@@ -104,8 +104,10 @@ fn describe_responses(wrong: &WrongResponses) -> String {
     match wrong {
         WrongResponses::Nothing => "contacts change nothing".to_owned(),
         WrongResponses::Unchanged(all) => {
-            let list: Vec<String> =
-                all.iter().map(|change| format!("the {} of {}", singular(change.quantity), body(change))).collect();
+            let list: Vec<String> = all
+                .iter()
+                .map(|change| format!("the {} of {}", singular(change.quantity), name_body(change)))
+                .collect();
             format!("unchanged by contacts: {}", list.join(", "))
         }
         WrongResponses::Across(all) => format!("{} also across the contact vector", name_changed_objects(all)),
@@ -118,7 +120,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
 /// Names the objects whose quantities change wrongly.
 fn name_changed_objects(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|change| change.quantity));
-    let bodies = distinct(all.iter().map(body));
+    let bodies = distinct(all.iter().map(name_body));
     match (&quantities[..], &bodies[..]) {
         ([one], [body]) => format!("the {} of {body} changes", singular(*one)),
         (_, [body]) => format!("position and velocity of {body} change"),
@@ -127,7 +129,7 @@ fn name_changed_objects(all: &[ChangedQuantity]) -> String {
     }
 }
 
-const fn body(changed: &ChangedQuantity) -> &'static str {
+const fn name_body(changed: &ChangedQuantity) -> &'static str {
     match (changed.kind, changed.body) {
         (PairKind::ParticleParticle, 0) => "the first particle",
         (PairKind::ParticleParticle, _) => "the second particle",
@@ -190,7 +192,7 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
             let (place, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
-            let body = body(changed);
+            let body = name_body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
         StageDetail::ZoneCount { count, of } => format!("in {count} of {of} zones of the first round"),

@@ -1,5 +1,5 @@
 //! Describes faults in a contest program's search for nearby pairs.
-use crate::number::{count, format_count};
+use crate::number::{format_count, group_digits};
 use fosssim_findings::PairText;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
 use fosssim_model::sim::PairKind;
@@ -67,12 +67,12 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
         let numbers = format!(
             "Pairs that are {}: {}. Reported once: {}.",
             describe_times(fault.times),
-            count(wrong),
-            count(right)
+            group_digits(wrong),
+            group_digits(right)
         );
         let traits = fault.traits.iter().map(|pair_trait| {
             let others = format_count(right, "other");
-            format!("{}: also in {} of {others}.", pair_trait.exact_condition, count(pair_trait.right_pairs))
+            format!("{}: also in {} of {others}.", pair_trait.exact_condition, group_digits(pair_trait.right_pairs))
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
     };

@@ -226,15 +226,15 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the artifact cannot be read.
-    pub async fn read_beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
+    pub async fn read_beginning(&self, artifact: &Artifact, max: usize) -> Result<Vec<u8>, Problem> {
         let mut pieces = self.open(artifact).await?.pieces;
         let mut bytes = Vec::new();
-        while bytes.len() < most
+        while bytes.len() < max
             && let Some(piece) = pieces.next().await
         {
             bytes.extend_from_slice(&piece?);
         }
-        bytes.truncate(most);
+        bytes.truncate(max);
         Ok(bytes)
     }
 }

@@ -229,7 +229,7 @@ impl RemoteWorker {
 const MAX_POINTS: f64 = 1e9;
 const MAX_SLOTS: usize = 256;
 
-/// Returns untrusted text on one line, without control characters, and shortened to `most` characters.
-fn strip_controls(text: &str, most: usize) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
+/// Returns untrusted text on one line, without control characters, and shortened to `max` characters.
+fn strip_controls(text: &str, max: usize) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(max).collect()
 }

@@ -67,15 +67,15 @@ pub struct Overview {
 from_row! { Overview { students, handed_in, accepted, submissions, requests, regrades, slots } }
 from_row! { Request { submission, number, login, text = "request", requested_at } }
 
-fn check_text(what: &str, text: &str, least: usize) -> Result<(), Problem> {
+fn check_text(what: &str, text: &str, min: usize) -> Result<(), Problem> {
     let length = text.chars().count();
     let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
     if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
         let hidden = hidden.escape_unicode();
         return Err(Problem::invalid(format!("{what} must not contain the invisible character {hidden}")));
     }
-    let is_fit = (least..=MAX_TEXT_LENGTH).contains(&length);
-    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {MAX_TEXT_LENGTH} characters")))
+    let is_fit = (min..=MAX_TEXT_LENGTH).contains(&length);
+    ensure(is_fit, Problem::invalid(format!("{what} must have {min} to {MAX_TEXT_LENGTH} characters")))
 }
 
 impl Staff {

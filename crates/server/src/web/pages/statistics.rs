@@ -72,7 +72,7 @@ impl Statistics {
             students: standings.len(),
             section_counts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
             mean_and_median: points.map(|count| (format_points(mean(count)), format_points(middle(count)))),
-            histogram: histogram::html(shares.iter().map(|share| share / 100.0)),
+            histogram: histogram::render_histogram(shares.iter().map(|share| share / 100.0)),
             mistakes: find_clusters(standings, likely_mistake),
             duplicates: find_clusters(standings, |row| Some(row.digest.as_str()).filter(|digest| !digest.is_empty()))
                 .into_iter()

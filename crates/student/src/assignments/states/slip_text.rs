@@ -93,18 +93,18 @@ impl Slip {
     }
 }
 
-/// Returns the description of a further power `by` of a factor, whose right power is `has`.
-fn describe_power(has: i8, by: i8, factor: &str) -> String {
-    match (has.signum(), (has + by).signum()) {
+/// Returns the description of a further power `further_power` of a factor, whose right power is `right_power`.
+fn describe_power(right_power: i8, further_power: i8, factor: &str) -> String {
+    match (right_power.signum(), (right_power + further_power).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),
         (0, _) => format!("is divided by {factor}"),
         (1, 0) => format!("is not multiplied by {factor}"),
-        (1, 1) if by > 0 => format!("is multiplied by {factor} one time too many"),
+        (1, 1) if further_power > 0 => format!("is multiplied by {factor} one time too many"),
         (1, 1) => format!("is multiplied by {factor} one time too few"),
         (1, _) => format!("is divided by {factor} instead of multiplied by it"),
         (_, 0) => format!("is not divided by {factor}"),
         (_, 1) => format!("is multiplied by {factor} instead of divided by it"),
-        _ if by < 0 => format!("is divided by {factor} one time too many"),
+        _ if further_power < 0 => format!("is divided by {factor} one time too many"),
         _ => format!("is divided by {factor} one time too few"),
     }
 }
