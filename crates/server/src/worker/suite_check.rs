@@ -45,7 +45,7 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
                 .filter(|line| !line.is_empty())
                 .collect::<Vec<_>>()
                 .join(";\n")
-                .replace(":;\n", ":\n"),
+                .replace(":;\n", ": "),
         )),
         (End::Code(_), _) => Ok(()),
         (End::Signal(_), _) => {

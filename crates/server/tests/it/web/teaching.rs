@@ -268,8 +268,7 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
     teacher.send("PUT", &mark, JSON, br#"{"points": 90, "comment": "ill"}"#).expect(200);
     assert_eq!(seen()["grade"]["points"], "90");
-    // An extension that is earlier than the due date has no effect.
-    teacher.send("PUT", extension, JSON, br#"{"due_at": "2001-01-01T00:00Z"}"#).expect(204);
+    teacher.send("PUT", extension, JSON, br#"{"due_at": "2001-01-01T00:00Z"}"#).expect(400);
     teacher.send("PUT", &mark, JSON, b"{}").expect(200);
     assert_eq!(seen()["grade"]["points"], "76");
     // Late days without a deduction.
