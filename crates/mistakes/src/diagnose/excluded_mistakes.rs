@@ -83,10 +83,10 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
     let work = Cell::new(0);
     let shows = |scene: &Scene, key: &str| mistake_is_visible_within(scene, key, &work);
-    // Pairs of mistakes in states are tried on every trace, so a second one does not explain what is wrong there.
-    let partners = usize::from(is_of_state);
-    let is_alone =
-        |scene: &Scene| others.iter().filter(|other| **other != key && shows(scene, other)).count() <= partners;
+    // Two mistakes in the same force or integrator, whose keys begin with the same word, are rivals: a program makes
+    // one of them.
+    let is_rival = |other: &str| is_of_state && other.split('-').next() == key.split('-').next();
+    let is_alone = |scene: &Scene| !others.iter().any(|other| !is_rival(other) && *other != key && shows(scene, other));
     let against = wrong.iter().filter(|(scene, list)| is_open(list) && shows(scene, key) && is_alone(scene));
     explained > 0 && against.take(needed).count() == needed
 }
