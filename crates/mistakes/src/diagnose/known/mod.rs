@@ -7,7 +7,7 @@
 //! search never judges: a step that no mistake reproduces stays wrong. Correct variants of the catalogue are tried as
 //! well, and if one of them reproduces the steps, no mistake is named.
 //!
-//! The mathematics is that of the two simulators; the only tolerances are those of [`compare`](super::sampling::compare).
+//! The mathematics is that of the two simulators; the only tolerances are those of [`sampling`](super::sampling).
 mod alignment;
 mod applicable_rows;
 mod candidates;
