@@ -141,14 +141,9 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
         for trace in traces {
             let reported = evidence.reported;
-            let is_kin = |explanation: &&Explanation| {
-                trace.symptoms.iter().any(|other| other.explanation.key == explanation.key)
-            };
-            evidence.related_traces += usize::from(
-                reported
-                    .filter(|explanation| explanation.names_stage())
-                    .is_some_and(|explanation| is_kin(&explanation)),
-            );
+            let has_key = |key: &str| trace.symptoms.iter().any(|symptom| symptom.explanation.key == key);
+            evidence.related_traces +=
+                usize::from(reported.is_some_and(|reported| reported.names_stage() && has_key(&reported.key)));
             evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;

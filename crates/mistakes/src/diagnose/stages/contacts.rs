@@ -11,6 +11,7 @@ use crate::diagnose::{
 };
 use fosssim_model::{scene::Scene, sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
+use std::ops::Range;
 
 /// Returns the explanation that the pairs of the first pass are in a different order. All polynomials of the pass must
 /// be logged.
@@ -32,61 +33,58 @@ pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> 
 
 /// Returns the kinds of the pairs of the first pass that the log lacks, if it consists of the other pairs' polynomials.
 fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
-    let size = facts.count_certain_polynomials();
-    let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
-    let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
+    let logged = facts.actual.end.polynomials.len();
     let (mut at, mut skipped) = (0, Vec::new());
-    for ((pair, first), end) in facts.detections.iter().zip(ends).take_while(|(_, end)| *end <= size) {
-        let is_logged = at + end - first <= theirs.len()
-            && (*first..end)
-                .all(|index| polynomial_matches(ours.get(index), theirs.get(at + index - first), &ROUND_OFF));
-        if is_logged {
-            at += end - first;
+    for (kind, block) in pair_blocks(facts, facts.count_certain_polynomials()) {
+        if is_logged_at(facts, &block, at, logged) {
+            at += block.len();
         } else {
-            skipped.push((pair.kind, 0.0));
+            skipped.push((kind, 0.0));
         }
     }
-    (at > 0 && at == theirs.len() && !skipped.is_empty()).then_some(skipped)
+    (at > 0 && at == logged && !skipped.is_empty()).then_some(skipped)
+}
+
+/// Returns the kind of each pair whose polynomials are among the first `size` expected ones, and their places.
+fn pair_blocks(facts: &StepFacts, size: usize) -> impl Iterator<Item = (PairKind, Range<usize>)> {
+    let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
+    let blocks = facts.detections.iter().zip(ends).map(|((pair, first), end)| (pair.kind, *first..end));
+    blocks.take_while(move |(_, block)| block.end <= size)
+}
+
+/// Returns whether the first `size` logged polynomials contain those of a block, from the place `at` on.
+fn is_logged_at(facts: &StepFacts, block: &Range<usize>, at: usize, size: usize) -> bool {
+    let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
+    let matches = |index: usize| polynomial_matches(ours.get(index), theirs.get(at + index - block.start), &ROUND_OFF);
+    at + block.len() <= size && block.clone().all(matches)
 }
 
 /// Returns whether nearly all pairs of the first pass are complete but some are out of order. Pairs that an earlier
 /// contact of the pass has moved are not found.
 fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
-    let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
-    if theirs.len() < size {
+    if facts.actual.end.polynomials.len() < size {
         return false;
     }
-    let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
-    let mut unmatched: Vec<(usize, usize, usize)> = facts
-        .detections
-        .iter()
-        .zip(ends)
-        .enumerate()
-        .take_while(|(_, (_, end))| *end <= size)
-        .map(|(number, ((_, first), end))| (number, *first, end))
-        .collect();
+    let blocks = pair_blocks(facts, size).enumerate();
+    let mut unmatched: Vec<(usize, Range<usize>)> = blocks.map(|(number, (_, block))| (number, block)).collect();
     let pairs = unmatched.len();
     let (mut at, mut found, mut moved, mut misplaced, mut last) = (0, 0, 0, 0, 0);
     while at < size {
-        let is_here = |&(_, first, end): &(usize, usize, usize)| {
-            at + end - first <= size
-                && (first..end)
-                    .all(|index| polynomial_matches(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
-        };
+        let is_here = |(_, block): &(usize, Range<usize>)| is_logged_at(facts, block, at, size);
         // The expected pair is tried first, then the following ones, because pairs may be similar.
-        let own = unmatched.iter().position(|block| block.1 == at && is_here(block));
-        let later = unmatched.iter().position(|block| block.0 >= last && is_here(block));
+        let own = unmatched.iter().position(|pair| pair.1.start == at && is_here(pair));
+        let later = unmatched.iter().position(|pair| pair.0 >= last && is_here(pair));
         let Some(index) = own.or(later).or_else(|| unmatched.iter().position(is_here)) else {
             at += 1;
             continue;
         };
-        let (number, first, end) = unmatched.remove(index);
+        let (number, block) = unmatched.remove(index);
         found += 1;
-        moved += usize::from(first != at);
+        moved += usize::from(block.start != at);
         misplaced += usize::from(number < last);
         last = number;
-        at += end - first;
+        at += block.len();
     }
     let is_spoilt = facts.is_continuous() && !facts.hits.is_empty() && 3 * found >= 2 * pairs && 3 * moved >= found;
     misplaced > 0 && (found == pairs || is_spoilt)
