@@ -485,20 +485,19 @@ pub(super) async fn history(
         LEFT JOIN account ON account.id = grade_change.changed_by
         WHERE grade_change.submission = ? ORDER BY grade_change.id";
     let rows = transaction.rows(statement, values![submission]).await?;
-    let read_shown = |row: &Row, column: &str| -> Result<Option<VisibleGrade>, DbError> {
-        let text = row.maybe_text(column)?.filter(|_| withheld);
-        Ok(text.as_deref().and_then(VisibleGrade::from_text))
+    // The code, the points and their maximum, as the reader may see them.
+    let read_grade = |row: &Row, side: &str| {
+        let column = |name: &str| row.maybe_text(&format!("{side}_{name}"));
+        let shown = column("shown")?.filter(|_| withheld).as_deref().and_then(VisibleGrade::from_text);
+        Ok::<_, DbError>(match shown {
+            Some(shown) => (Some(shown.code), shown.points, shown.max_points),
+            None => (column("code")?, column("points")?, column("max_points")?),
+        })
     };
     let mut by_hand = None;
     let read = |row: &Row| {
-        let (old_code, old_points, old_max_points) = match read_shown(row, "old_shown")? {
-            Some(shown) => (Some(shown.code), shown.points, shown.max_points),
-            None => (row.maybe_text("old_code")?, row.maybe_text("old_points")?, row.maybe_text("old_max_points")?),
-        };
-        let (new_code, new_points, new_max_points) = match read_shown(row, "new_shown")? {
-            Some(shown) => (shown.code, shown.points, shown.max_points),
-            None => (row.text("new_code")?, row.maybe_text("new_points")?, row.maybe_text("new_max_points")?),
-        };
+        let (old_code, old_points, old_max_points) = read_grade(row, "old")?;
+        let (new_code, new_points, new_max_points) = read_grade(row, "new")?;
         let old_points = by_hand.clone().or(old_points);
         // The points that staff set count instead of the grader's until staff remove them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
@@ -510,7 +509,7 @@ pub(super) async fn history(
             old_code,
             old_points,
             old_max_points,
-            new_code,
+            new_code: new_code.unwrap_or_default(),
             new_points: by_hand.clone().or(new_points),
             new_max_points,
             by_what: describe_task(&row.text("task")?, is_staff),
