@@ -232,7 +232,8 @@ fn negative_counts_are_rejected() {
 fn example(collision: &str) -> Vec<u8> {
     let xml = format!(
         r#"<scene><duration time="0.5"/><integrator type="explicit-euler" dt="0.5"/><collision type="{collision}"
-            COR="1" maxiters="5" k="0" thickness="0"/><particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
+            COR="1" maxiters="5" k="0" thickness="0"/>
+            <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
             <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#
     );
     let scene = original::read(xml.as_bytes()).expect("a scene").scene;

@@ -224,7 +224,8 @@ mod tests {
     #[test]
     fn missing_and_repeated_scenes_are_reported_at_their_patterns() {
         let text = "schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:NoSuchTests/*\",\n \
-                    \"no/*.xml\"]\n                    [[group]]\nname = \"b\"\nscenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";
+                    \"no/*.xml\"]\n                    [[group]]\nname = \"b\"\n\
+                    scenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";
         let error = load_suite(text, Path::new("nowhere")).expect_err("wrong").to_string();
         assert!(error.contains("5:11: no embedded scene matches asset:NoSuchTests/*"), "{error}");
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");

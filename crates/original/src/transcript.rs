@@ -323,7 +323,8 @@ mod tests {
         let mut transcript = Transcript::new(Vec::new(), heading);
         transcript.observe_begin();
         let bytes = transcript.finish().unwrap();
-        let start = "\x1b[32;1m------------------------------------------    \n  _____ ___  ____ ____ ____  _                \n";
+        let start = "\x1b[32;1m------------------------------------------    \n\
+            \x20 _____ ___  ____ ____ ____  _                \n";
         assert!(bytes.starts_with(start.as_bytes()));
         let end = b"------------------------------------------    \x1b[m\n\n\
             \x1b[34;1mFOSSSim Version: \x1b[mFall 2010 v.A\n\x1b[34;1mBuild type: \x1b[mRelease\n\
@@ -368,7 +369,8 @@ mod tests {
             ..............Collision Detection Error: \n\
             \x20 Missed collision: Particle 0 - Particle 1 with normal = 0.4 0\n\
             Wrong polynomial degree!\nWrong polynomial degree!\n\
-            ...................................\x1b[35;1mFOSSSim message: \x1b[mSimulation complete at time 2. Exiting.\n\
+            ...................................\
+            \x1b[35;1mFOSSSim message: \x1b[mSimulation complete at time 2. Exiting.\n\
             \x1b[35;1mFOSSSim message: \x1b[mColsing benchmarked simulation file 'm.bin'.\n\
             Accumulated Position Residual: 0.00282843   Failed.\nAccumulated Velocity Residual: 0   Passed.\n\
             Maximum Position Residual: 1e-10   Failed.\nMaximum Velocity Residual: 0   Passed.\n\

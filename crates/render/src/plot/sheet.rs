@@ -91,8 +91,8 @@ impl Sheet {
         };
         let label = if is_styled { String::new() } else { format!(" aria-label=\"{title}\"") };
         let mut svg = format!(
-            "<svg{space} class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\"{label}\
-             {font}><title>{title}</title><desc>{description}</desc>\n"
+            "<svg{space} class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
+             role=\"img\"{label}{font}><title>{title}</title><desc>{description}</desc>\n"
         );
         if embedding == PlotTarget::File {
             let _ = writeln!(svg, "<style>{STYLE}</style>");

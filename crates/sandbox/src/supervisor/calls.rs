@@ -68,8 +68,8 @@ pub(super) const TIMES_BY_NAME: &[NamedCall] = calls![; old: SYS_utime SYS_utime
 /// free blocks, because they reveal what others wrote.
 pub(super) const DENIED_CALLS: &[NamedCall] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr
-    SYS_removexattr SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
-    SYS_setgroups SYS_setfsuid SYS_setfsgid
+    SYS_removexattr SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler
+    SYS_sched_setparam SYS_sched_setattr SYS_setgroups SYS_setfsuid SYS_setfsgid
     SYS_personality SYS_shmget SYS_shmat SYS_shmctl SYS_semget SYS_semctl SYS_semop SYS_msgget SYS_msgsnd SYS_msgrcv
     SYS_mincore SYS_fadvise64 SYS_msgctl SYS_mq_open SYS_rt_sigqueueinfo SYS_rt_tgsigqueueinfo SYS_pidfd_send_signal
     SYS_mlockall SYS_ioprio_set SYS_statfs SYS_fstatfs
