@@ -28,6 +28,9 @@ pub struct MemberLine {
     pub(crate) role: String,
     /// The headings of columns that are not stored, but have a value in this line.
     pub(crate) unused: Vec<String>,
+    // Whether the line may contain unknown headings: it is the first one, and has no e-mail address.
+    #[serde(skip)]
+    pub(crate) may_be_heading: bool,
     /// The error in the line; any error stops the whole import.
     pub(crate) error: Option<String>,
     /// A link with which the member signs in once; `None` if the account existed already.
@@ -103,8 +106,8 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
-        let unused = unused.unwrap_or_default();
-        lines.push(MemberLine { line, name, login, email, role, unused, error, link: None });
+        let (unused, may_be_heading) = (unused.unwrap_or_default(), index == 0 && !email.contains('@'));
+        lines.push(MemberLine { line, name, login, email, role, unused, may_be_heading, error, link: None });
         ensure(lines.len() <= MAX_LINES, Problem::invalid(format!("a table has at most {MAX_LINES} lines")))?;
     }
     if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
