@@ -50,7 +50,7 @@ pub(super) use accounts::{TokenName, WorkerTokenName};
 pub(super) use assignments::{Revision, receive_suite};
 pub(super) use courses::CourseInput;
 pub use submissions::export_csv;
-pub(super) use submissions::{ReviewRequest, escape_cell, receive};
+pub(super) use submissions::{ReviewRequest, receive, write_csv};
 
 use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};

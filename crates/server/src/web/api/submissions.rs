@@ -176,47 +176,51 @@ pub(super) async fn upload(
 ///
 /// Fails only if memory runs out.
 pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) -> Result<String, Problem> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    let failed = |_| Problem::fault();
-    let head = "login,name,submissions,submission,verdict,points,max_points,graded_at,likely_mistake";
+    let head = "login,name,submissions,submission,verdict,points,grader_points,max_points,graded_at,likely_mistake";
     let mut groups: Vec<&str> = Vec::new();
     for (group, _) in stored.values().flat_map(|kept| &kept.parts.groups) {
         if !groups.contains(&group.as_str()) {
             groups.push(group);
         }
     }
-    let named = groups.iter().map(|group| escape_cell(group));
-    writer.write_record(head.split(',').map(str::to_owned).chain(named)).map_err(failed)?;
+    let mut rows = vec![head.split(',').chain(groups.iter().copied()).map(str::to_owned).collect()];
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
+        let by_staff = counts.and_then(|counts| counts.mark.as_ref()).filter(|mark| mark.points.is_some());
         let or_empty = |text: Option<&String>| text.map(format_points).unwrap_or_default();
         let parts = grade.and_then(|grade| Some(&stored.get(&grade.result)?.parts));
-        let group_points = |name: &&str| {
-            let found = parts?.groups.iter().find(|(group, _)| group == name)?;
-            found.1.map(format_points)
-        };
-        let points = groups.iter().map(|group| group_points(group).unwrap_or_default());
+        let points = groups.iter().map(|name| {
+            let found = parts.and_then(|parts| parts.groups.iter().find(|(group, _)| group == name));
+            found.and_then(|(_, points)| points.map(format_points)).unwrap_or_default()
+        });
         let row = [
-            escape_cell(&standing.login),
-            escape_cell(&standing.name),
+            standing.login.clone(),
+            standing.name.clone(),
             standing.submissions.to_string(),
             counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
-            grade.map(|grade| escape_cell(&grade.verdict)).unwrap_or_default(),
+            grade.map(|grade| grade.verdict.clone()).unwrap_or_default(),
             or_empty(grade.and_then(|grade| grade.points.as_ref())),
+            or_empty(by_staff.and_then(|mark| mark.grader_points.as_ref())),
             or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
             grade.map(|grade| calendar::format_iso(grade.created_at)).unwrap_or_default(),
-            parts.map(|parts| escape_cell(&parts.mistakes.join(" "))).unwrap_or_default(),
+            parts.map(|parts| parts.mistakes.join(" ")).unwrap_or_default(),
         ];
-        writer.write_record(row.into_iter().chain(points)).map_err(failed)?;
+        rows.push(row.into_iter().chain(points).collect());
+    }
+    write_csv(rows)
+}
+
+/// Writes a table. Text that a spreadsheet would read as a formula is marked, so that it is read as text.
+pub(in crate::web) fn write_csv(rows: Vec<Vec<String>>) -> Result<String, Problem> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let is_formula = |cell: &String| cell.starts_with(['=', '+', '-', '@', '\t']);
+    for row in rows {
+        let cells = row.into_iter().map(|cell| if is_formula(&cell) { format!("'{cell}") } else { cell });
+        writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     String::from_utf8(bytes).map_err(|_| Problem::fault())
-}
-
-/// Marks text that a spreadsheet would read as a formula, so that it is read as text.
-pub(in crate::web) fn escape_cell(text: &str) -> String {
-    if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
 
 answers! { ACCEPTED:

@@ -1,7 +1,7 @@
 //! The page for staff about one student's work, and the pages for importing a class from a table.
 use super::{
     super::{
-        api::{ReviewRequest, escape_cell},
+        api::{ReviewRequest, write_csv},
         input::{AddressParts, Fields},
         upload,
     },
@@ -123,15 +123,12 @@ async fn render_import(staff: &Staff, table: String, lines: Vec<ImportRow>, is_d
         .with_parent(format!("/c/{slug}/members"), "Members")
         .with_parent(format!("/c/{slug}/members/import"), "Import a class");
     let is_wrong = lines.iter().any(|line| line.member.error.is_some());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    writer.write_record(["Name", "Login", "E-mail", "Role", "Link"]).map_err(|_| Problem::fault())?;
-    for ImportRow { member, link, .. } in &lines {
-        let cells = [&member.name, &member.login, &member.email, &member.role, link].map(|text| escape_cell(text));
-        writer.write_record(cells).map_err(|_| Problem::fault())?;
-    }
-    let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
+    let mut rows = vec![["Name", "Login", "E-mail", "Role", "Link"].map(str::to_owned).to_vec()];
+    rows.extend(lines.iter().map(|ImportRow { member, link, .. }| {
+        [&member.name, &member.login, &member.email, &member.role, link].map(String::clone).to_vec()
+    }));
     let seen_event = staff.last_event().await?;
-    let download = format!("data:text/csv;charset=utf-8,{}", percent_encode(&bytes));
+    let download = format!("data:text/csv;charset=utf-8,{}", percent_encode(write_csv(rows)?.as_bytes()));
     let is_done = is_done && !is_wrong;
     let ignored_columns = lines.iter().flat_map(|line| line.member.unused.clone()).collect();
     render(&ImportPage { frame, slug, table, lines, ignored_columns, is_wrong, is_done, download, seen_event })

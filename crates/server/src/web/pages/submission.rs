@@ -62,11 +62,6 @@ pub(super) async fn submit(
     Ok(Redirect::to(&format!("/c/{slug}/s/{}", result.submission.id)))
 }
 
-/// Finds the assignment of a submission; `None` if the member may not see it.
-async fn find_assignment(member: &Member, submission: &Submission) -> Result<Option<Assignment>, Problem> {
-    Ok(member.assignments().await?.into_iter().find(|assignment| assignment.slug == submission.assignment))
-}
-
 /// Returns the frame of a submission's pages.
 fn submission_frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
     let assignment_frame = |assignment: &Assignment| {
@@ -84,7 +79,8 @@ fn submission_frame(member: &Member, assignment: Option<&Assignment>, submission
 
 pub(super) async fn show_submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {
     let submission = member.submission(id).await?;
-    let assignment = find_assignment(&member, &submission).await?;
+    // The member may not see the assignment any more.
+    let assignment = member.assignments().await?.into_iter().find(|one| one.slug == submission.assignment);
     let page = report_page(&submission);
     let report = match page.filter(|_| submission.removed_at.is_none()) {
         Some(name) => report::read_report(&member, &member.report(id, name).await?).await?,

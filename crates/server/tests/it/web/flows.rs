@@ -69,10 +69,11 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     assert_eq!(class[0]["submissions"], 2);
     assert_eq!(class[0]["counts"]["id"], second);
     let table = teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text();
-    let head = "login,name,submissions,submission,verdict,points,max_points,graded_at,likely_mistake,Group,'=More\n";
+    let head = "login,name,submissions,submission,verdict,points,grader_points,max_points,graded_at,likely_mistake,\
+                Group,'=More\n";
     assert!(table.starts_with(head), "{table}");
     assert!(table.contains(",,10,100\n"), "{table}");
-    assert!(table.contains(&format!("ada,The ada,2,{second},in words,100,100,20")), "{table}");
+    assert!(table.contains(&format!("ada,The ada,2,{second},in words,100,,100,20")), "{table}");
     let lines = teacher.get("/api/v1/courses/physics/assignments/m1/export?format=jsonl").expect(200).text();
     assert_eq!(lines.lines().count(), 3);
 

@@ -106,7 +106,8 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(page.contains(words), "{page}");
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains("68.5 of 100") && !class.contains("odd"), "{class}");
-    assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",68.5,"));
+    let table = teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text();
+    assert!(table.contains(",points,grader_points,max_points,") && table.contains(",68.5,30,100,"), "{table}");
     // A class is searched, and sorted.
     let eve_handed_in = eve.submit("physics", &program("WA", 90));
     eve.wait_for_grade("physics", eve_handed_in);
@@ -115,6 +116,8 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(class.contains("1 student.") && has("eve") && !has("ada"), "{class}");
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
+    let heading = "<th scope=\"col\" class=\"num\" aria-sort=\"descending\">";
+    assert!(class.contains(heading) && class.matches("aria-sort").count() == 1, "{class}");
     check_parts(&server, &admin, &teacher);
     // The wrong scenes of students whose programs ran.
     let dora = server.member(&admin, "physics", "dora", "student");
