@@ -9,11 +9,6 @@ pub fn random_hex() -> String {
     to_hex(&bytes)
 }
 
-/// Returns eight random bits, for values that need not be secret.
-pub(crate) fn random_byte() -> u8 {
-    getrandom::u32().map_or(0, |word| word.to_le_bytes()[0])
-}
-
 /// Returns bytes in hexadecimal.
 pub fn to_hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()

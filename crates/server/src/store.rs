@@ -195,7 +195,8 @@ impl Store {
     /// Fails if the file can't be read or changes during the upload, or the store fails.
     pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
         let artifact = digest_of_file(file).await?;
-        if self.find_fresh(&artifact.digest).await? {
+        // A stored artifact that will not be removed soon is kept.
+        if self.age(&artifact.digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE) {
             return Ok(artifact);
         }
         let (mut pieces, mut hasher) = (stream_file(file).await?, Sha256::new());
@@ -221,11 +222,6 @@ impl Store {
     /// Fails if the folder or bucket cannot be read.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH_FOLDER)).await?.is_some())
-    }
-
-    /// Returns whether the store has an artifact with this digest that will not be removed soon.
-    async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE))
     }
 
     /// Returns the age of a stored object; `None` if it does not exist.

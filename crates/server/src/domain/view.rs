@@ -86,7 +86,7 @@ pub struct Submission {
     /// The time when the upload and the reports were removed; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
-    /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `canceled`.
+    /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
     pub state: String,
     /// The number of jobs ahead in the queue, while the submission waits.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -227,6 +227,17 @@ pub struct Event {
     pub owner: Option<String>,
     /// The event as a sentence.
     pub text: String,
+}
+
+impl Event {
+    /// Returns whether the same person caused both events within a second, such as an import that adds two members.
+    /// Their texts may differ in the first word only.
+    pub(crate) fn is_similar(&self, other: &Self) -> bool {
+        let end = |event: &Self| event.text.split_once(' ').map(|(_, end)| end.to_owned());
+        let subject = |event: &Self| (event.actor.clone(), event.course.clone(), event.kind.clone(), end(event));
+        let is_close = self.happened_at.abs_diff(other.happened_at) < 1000;
+        is_close && self.actor.is_some() && subject(self) == subject(other)
+    }
 }
 
 /// A filter for events of the audit log. An empty part allows all events.

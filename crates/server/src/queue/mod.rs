@@ -23,7 +23,6 @@ pub use notifier::{Notifier, Subscription};
 pub use queue_position::{QueuePosition, find_queue_position, find_time_left};
 pub use tick::{GivenUpJob, Tick, tick};
 
-use crate::secret;
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
@@ -112,7 +111,7 @@ impl QueuePolicy {
     /// at the same time.
     fn retry_delay(&self, failures: i64) -> Duration {
         let longest = self.max_delay(failures);
-        longest - longest / 4 * secret::random_byte().into() / 255
+        longest - longest / 4 * (getrandom::u32().unwrap_or(0) % 256) / 255
     }
 }
 

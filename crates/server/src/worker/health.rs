@@ -33,7 +33,7 @@ pub(super) struct Health<G> {
     /// The reason why the last check failed; `None` if it succeeded.
     fault: Arc<std::sync::Mutex<Option<String>>>,
     /// Notifies waiting tasks when the worker becomes able or unable to grade.
-    change: Arc<Notify>,
+    pub(super) change: Arc<Notify>,
 }
 
 impl<G: Grader> Health<G> {
@@ -58,11 +58,6 @@ impl<G: Grader> Health<G> {
     /// Returns the reason why the last check failed; `None` if it succeeded.
     pub(super) fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
-    }
-
-    /// Waits until the result of the check changes.
-    pub(super) async fn wait_for_change(&self) {
-        self.change.notified().await;
     }
 
     /// Waits until the worker can grade. Returns false if the worker must stop before that.

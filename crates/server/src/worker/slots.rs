@@ -66,7 +66,7 @@ pub async fn work<D: JobSource, G: Grader>(
             }
             tokio::select! {
                 () = tokio::time::sleep(source.tick_every()) => {}
-                () = health.wait_for_change() => {}
+                () = health.change.notified() => {}
             }
         }
     };

@@ -76,6 +76,12 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let again = teacher.send("POST", path, &csv, table.as_bytes()).expect(200).json();
     assert!(again[0]["link"].is_null() && again[0]["error"].is_null(), "{again}");
     assert_eq!(members(), 4);
+    // The log has a line for each member, and its page folds those of an import.
+    let many: String = (0..70).map(|number| format!("Student {number},s{number}\n")).collect();
+    teacher.send("POST", path, &csv, many.as_bytes()).expect(200);
+    let page = teacher.get("/c/physics/audit").expect(200).text();
+    assert!(page.contains("<summary>70 similar events, such as: s9 became student</summary>"), "{page}");
+    assert!(page.matches("became student</li>").count() == 70 && page.matches("<tr>").count() < 20, "{page}");
 }
 
 async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
@@ -103,7 +109,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
     assert!(page.contains("68.5 of 100 points") && page.contains("You are right"), "{page}");
     let words = "Staff gave 68.5 points</strong> instead of the grader's 30 (";
-    assert!(page.contains(words), "{page}");
+    assert!(page.contains(words) && page.contains("Points in the report are the grader's."), "{page}");
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains("68.5 of 100") && !class.contains("odd"), "{class}");
     let table = teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text();
