@@ -83,13 +83,16 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// Fails if its name is invalid, there are too many, or the person did not sign in recently.
+    /// Fails if its name is invalid or taken, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
         let way = if self.require_recent_browser()?.is_by_staff { SignInMethod::ByStaff } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
-        let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
-        let count = transaction.one(statement, values![self.account.id]).await?;
+        let statement = "SELECT count(*) AS n, count(CASE WHEN name = ? THEN 1 END) AS with_name FROM token
+            WHERE account = ? AND revoked_at IS NULL";
+        let count = transaction.one(statement, values![name, self.account.id]).await?;
+        let taken = Problem::conflict("you have a token with this name", "choose another name, or revoke that token");
+        ensure(count.int("with_name")? == 0, taken)?;
         ensure(count.int("n")? < 50, Problem::conflict("an account has at most 50 tokens", "revoke unused ones"))?;
         let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
         transaction.commit().await?;
