@@ -241,7 +241,15 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("rowheader", { name: "Eve" }).waitFor();
   assert.equal(await page.getByRole("link", { name: "ada, submission 1" }).count(), 0);
   await page.goto(`${address}/c/physics/s/1`);
-  await page.getByLabel("Compare with").fill("ada");
+  // A mistyped login is reported at its field.
+  const other = page.getByLabel("Compare with");
+  await other.fill("adda");
+  await page.getByRole("button", { name: "Compare" }).click();
+  await page.waitForFunction(() => document.querySelector("input[name=with]:invalid"));
+  assert.equal(await other.evaluate((field) => field.validationMessage), "There is no graded submission of adda.");
+  assert.equal(await other.inputValue(), "adda");
+  teacher.complaints.splice(0);
+  await other.fill("ada");
   await page.getByRole("button", { name: "Compare" }).click();
   await page.getByText("Both are right on the same scenes").waitFor();
   await checkAccessibility(page);

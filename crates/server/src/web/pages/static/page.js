@@ -149,6 +149,23 @@ timeZone?.addEventListener("input", () => {
   }
   timeZone.setCustomValidity(fault);
 });
+// A mistyped login stays in its field, which names the fault.
+const comparison = document.querySelector("form[action$='/beside']");
+if (comparison) {
+  const other = comparison.elements.with;
+  other.addEventListener("input", () => other.setCustomValidity(""));
+  comparison.addEventListener("submit", async (event) => {
+    event.preventDefault();
+    const url = `${comparison.action}?${new URLSearchParams(new FormData(comparison))}`;
+    const answer = await fetch(url).catch(() => null);
+    if (answer?.status !== 404) {
+      location.href = url;
+      return;
+    }
+    other.setCustomValidity(`There is no graded submission of ${other.value.trim()}.`);
+    other.reportValidity();
+  });
+}
 // Fill in the URLs of a learning platform from its host.
 const kind = document.getElementById("kind");
 if (kind) {
