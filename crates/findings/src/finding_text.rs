@@ -308,14 +308,14 @@ impl Display for PassText {
     }
 }
 
-/// Writes a power of t, as `t^3`, `t` or `constant term`.
+/// Names the coefficient of a power of t, such as `coefficient of t^3` or `constant coefficient`.
 #[derive(Debug, Clone, Copy)]
 pub struct PowerText(pub usize);
 
 impl Display for PowerText {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0 {
-            0 => f.write_str("constant term"),
+            0 => f.write_str("constant coefficient"),
             1 => f.write_str("coefficient of t"),
             power => write!(f, "coefficient of t^{power}"),
         }

@@ -257,7 +257,7 @@ pub(crate) mod tests {
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(explanation_texts(&explanations(), Style::Plain).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps tried)
-          t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
+          in the coefficient of t^2, i R^2 has the factor 0 instead of 1 (i = d32.d32)
           Cannot be distinguished here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 1, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25

@@ -3,8 +3,8 @@
 /// Returns a line whose formulas are written with Unicode's mathematical signs.
 ///
 /// ```
-/// let line = "t^2 lacks -4 e h, with e = d21.x21.";
-/// assert_eq!(fosssim_report::formula::to_mathematical_signs(line), "t² lacks −4 e h, with e = Δx₂₁·x₂₁.");
+/// let line = "t^2: -4 e h, with e = d21.x21.";
+/// assert_eq!(fosssim_report::formula::to_mathematical_signs(line), "t²: −4 e h, with e = Δx₂₁·x₂₁.");
 /// ```
 pub fn to_mathematical_signs(line: &str) -> String {
     let mut out = String::with_capacity(line.len());
@@ -83,8 +83,8 @@ mod tests {
     #[test]
     fn formulas_get_signs_and_sentences_stay() {
         for (line, expected) in [
-            ("t: -x21.d21 is used instead of -2 x21.d21.", "t: −x₂₁·Δx₂₁ is used instead of −2 x₂₁·Δx₂₁."),
-            ("1: r1^2 + re^2 is used instead of (r1 + re)^2.", "1: r₁² + rₑ² is used instead of (r₁ + rₑ)²."),
+            ("It is -x21.d21 instead of -2 x21.d21.", "It is −x₂₁·Δx₂₁ instead of −2 x₂₁·Δx₂₁."),
+            ("r1^2 + re^2 is used instead of (r1 + re)^2.", "r₁² + rₑ² is used instead of (r₁ + rₑ)²."),
             ("b = (x1-x2).d32 + (dx1-dx2).x32", "b = (x₁−x₂)·Δx₃₂ + (Δx₁−Δx₂)·x₃₂"),
             ("0.05 <= alpha(t) <= 0.95 besides time <= 1.", "0.05 ≤ α(t) ≤ 0.95 besides time ≤ 1."),
             ("(I - n n^T) / sqrt(n.n)", "(I − n nᵀ) / √(n·n)"),

@@ -64,7 +64,7 @@ fosssim_num::closed_set! {
         /// All coefficients are divided by the leading one, even if it is negative.
         Monic = "monic", "The polynomial is divided by its leading coefficient, which loses its sign";
         /// There are too many coefficients.
-        TooLong = "too-long", "The polynomial has too high a degree";
+        TooLong = "too-long", "The degree of the polynomial is too high";
         /// The coefficients are in the opposite order, with the lowest power first.
         Reversed = "reversed", "The coefficients are in the wrong order, lowest power first";
         /// All coefficients have the wrong sign.
@@ -82,11 +82,11 @@ fosssim_num::closed_set! {
             "A polynomial of the pair is used instead of another one, with the wrong sign";
         /// Only the constant coefficient is there.
         ConstantOnly = "cut",
-            "The polynomial is cut to its constant coefficient, so it is tested only at the start of the step";
+            "The polynomial has only its constant coefficient, so it is tested only at the start of the step";
         /// The leading coefficients are missing.
-        Cut = "cut", "The polynomial is cut: leading coefficients are missing";
+        Cut = "cut", "Leading coefficients of the polynomial are missing";
         /// The last coefficients are missing.
-        CutEnd = "cut-end", "The polynomial is cut: its last coefficients are missing";
+        CutEnd = "cut-end", "The last coefficients of the polynomial are missing";
         /// Every displacement is multiplied by the same factor.
         DisplacementScale = "displacement-scale",
             "All displacements have the same factor, as if they were velocities or had another time step";
@@ -124,8 +124,8 @@ fosssim_num::closed_set! {
         Sign = "coefficient-sign", "The {} coefficient has the wrong sign";
         /// The coefficient is multiplied by a factor.
         Factor = "coefficient-factor", "The {} coefficient has a wrong factor";
-        /// The coefficient has a term too many.
-        TermForeign = "term-foreign", "The {} coefficient has a term too many";
+        /// The coefficient has an extra term.
+        TermForeign = "term-foreign", "The {} coefficient has an extra term";
         /// A term of the coefficient is missing.
         TermMissing = "term-missing", "A term of the {} coefficient is missing";
         /// The sign of a term is wrong.

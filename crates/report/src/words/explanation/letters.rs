@@ -101,13 +101,13 @@ mod tests {
 
     #[test]
     fn short_names_are_explained() {
-        let text = explain_line("t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.").expect("it has short names");
+        let text = explain_line("-4 e h is missing, with e = d21.x21 and h = d32.x32.").expect("it has short names");
         assert!(text.starts_with("Here d21 is dx2 - dx1, and so on;") && text.contains("edge's ends"), "{text}");
-        let text = explain_line("t: -x21.d21 is used instead of -2 x21.d21.").expect("it has short names");
+        let text = explain_line("The coefficient of t is -x21.d21 instead of -2 x21.d21.").expect("it has short names");
         assert!(text.starts_with("Here x21 is x2 - x1,") && text.contains("first particle"), "{text}");
-        let text = explain_line("t^2: R^2 i has weight 2, expected 1 (i = d32.d32)").expect("it has short names");
+        let text = explain_line("R^2 i has the factor 2 instead of 1 (i = d32.d32)").expect("it has short names");
         assert!(text.contains("R is r1 + re") && text.contains("edge's ends"), "{text}");
-        let text = explain_line("t^1: R^2 has weight 1, expected 0; multiplied by 0.3").expect("it has short names");
+        let text = explain_line("R^2 has the factor 1 instead of 0").expect("it has short names");
         assert_eq!(text, "Here R is r1 + r2.");
     }
 

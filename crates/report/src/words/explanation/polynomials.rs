@@ -1,5 +1,6 @@
 //! Describes wrong polynomials.
 use super::{capitalize, letters};
+use fosssim_judge::PowerText;
 use fosssim_mistakes::diagnose::{Guess, PolynomialDetail, PolynomialEvidence, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
@@ -52,7 +53,7 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::RightUpTo(error) => format!("right up to {error:.0e} of the size of its terms"),
         PolynomialDetail::Differs { subject, power, count, of } => {
             let place = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();
-            format!("{place}t^{power} differs in {count} of {of} samples")
+            format!("{place}the {} differs in {count} of {of} samples", PowerText(*power))
         }
         PolynomialDetail::Holds(value) => format!("the list always contains only {value}"),
         PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
@@ -61,7 +62,7 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
             format!("the {} polynomial is used instead of {}", stands.name(), belongs.name())
         }
         PolynomialDetail::Exchanged { powers: [one, other] } => {
-            format!("the coefficients of t^{one} and t^{other} are exchanged")
+            format!("the {} and the {} are exchanged", PowerText(*one), PowerText(*other))
         }
         PolynomialDetail::LastOnly(1) => "only the constant coefficient is there".to_owned(),
         PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),
@@ -71,13 +72,13 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
             letters::name_radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
         }
         PolynomialDetail::StandsFor { reading, letter, stand } => describe_substitute(*reading, letter, stand),
-        PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
-        PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),
-        PolynomialDetail::Unknown { power } => format!("t^{power}: no simple change explains it"),
+        PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("the {} is 0", PowerText(*power)),
+        PolynomialDetail::Factor { power, factor } => format!("the {} is multiplied by {factor}", PowerText(*power)),
+        PolynomialDetail::Unknown { power } => format!("no simple change explains the {}", PowerText(*power)),
         PolynomialDetail::Weight(weight) => describe_weight(weight),
         PolynomialDetail::Alternative(weights) => {
             let weights: Vec<String> = weights.iter().map(describe_weight).collect();
-            format!("Cannot be distinguished here from {}", weights.join("; "))
+            format!("Cannot be distinguished here from: {}", weights.join("; "))
         }
     }
 }
@@ -101,7 +102,7 @@ fn describe_substitute(reading: Reading, letter: &str, stand: &Substitute) -> St
     };
     match letter_meaning(reading, letter) {
         None => format!("{stand} is used instead of {letter}"),
-        Some(meaning) => format!("{letter}: {stand} is used instead of {meaning}"),
+        Some(meaning) => format!("{stand} is used instead of {letter} = {meaning}"),
     }
 }
 
@@ -114,5 +115,6 @@ fn describe_weight(weight: &Weight) -> String {
         .collect();
     meanings.dedup();
     let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
-    format!("t^{power}: {} has weight {actual}, expected {expected}{meanings}", letters.join(" "))
+    let (place, product) = (PowerText(*power), letters.join(" "));
+    format!("in the {place}, {product} has the factor {actual} instead of {expected}{meanings}")
 }

@@ -23,7 +23,7 @@ slips! {
     Halved "is half of the right value";
     Absolute "loses its sign by an absolute value";
     Squared "grows with the square of the stretch or depth, whatever its sign";
-    SquaredHalf "is half of a square, like in the energy";
+    SquaredHalf "is half of a square, as in the energy";
     SquaredAway "grows with the square of the depth";
     /// Multiplies the term by this power of the mass.
     Mass(i8) "has another factor";
@@ -37,9 +37,9 @@ slips! {
     MassOfFirst "uses the mass of the first particle for all particles";
     XOnly "loses its vertical component";
     YOnly "loses its horizontal component";
-    Exchanged "has its two components exchanged";
-    XForBoth "has the horizontal component twice";
-    YForBoth "has the vertical component twice";
+    Exchanged "exchanges its two components";
+    XForBoth "uses the horizontal component for both components";
+    YForBoth "uses the vertical component for both components";
     FirstOnly "acts only on the first of its bodies";
     SecondOnly "does not act on the first of its bodies";
     SameSign "has the same direction for both bodies instead of opposite ones";
@@ -76,10 +76,10 @@ slips! {
     Middle "uses the middle of the edge instead of its closest point";
     EndsOut "finds nothing beyond the ends of an edge";
     ToPoint "uses the point that defines the half-plane instead of its closest point";
-    Undivided "has the half-plane's normal with its own length instead of a unit vector";
-    OneSided "has the direction of the half-plane's normal, on both of its sides";
-    OneSidedLong "is along the half-plane's normal as it is given, on both of its sides";
-    OneSidedBack "has the opposite direction of the half-plane's normal, on both of its sides";
+    Undivided "does not normalize the half-plane's normal";
+    OneSided "has the direction of the half-plane's normal on both sides of it";
+    OneSidedLong "uses the half-plane's normal without normalizing it, and keeps its sign behind the half-plane";
+    OneSidedBack "has the opposite direction of the half-plane's normal on both sides of it";
     Unit "is normalized, although its length must be the distance";
     NoFactor "uses one as the coefficient of restitution";
     Inelastic "uses zero as the coefficient of restitution";
@@ -91,7 +91,7 @@ slips! {
     ThicknessInDepth "uses the thickness of the layer in the depth, but not in its test";
     Always "also acts on bodies that are apart";
     EqualMasses "ignores the masses";
-    SwappedMasses "has the masses exchanged";
+    SwappedMasses "exchanges the masses";
     FixedFinite "uses the mass of a fixed particle instead of an infinite mass";
     FixedAsFree "treats fixed particles like free ones, with their mass";
     FixedSpared "does not change fixed particles, which the assignment does not require here";

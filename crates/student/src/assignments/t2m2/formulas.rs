@@ -6,15 +6,15 @@
 use super::{Inputs, Subject};
 use fosssim_num::bounded::BoundedValue;
 
-/// A quantity of a formula.
+/// A symbol in a formula, such as `r1` or `x21.d21`.
 pub struct Letter {
-    /// The letter's name in messages.
+    /// The symbol in messages.
     pub name: &'static str,
-    /// The letter's meaning, in the assignment's notation. The text is empty if the name explains the letter.
+    /// The symbol's meaning, in the assignment's notation. The text is empty if the symbol explains itself.
     pub meaning: &'static str,
-    /// The letter's degree in the displacements.
+    /// The symbol's degree in the displacements.
     pub order: u8,
-    /// The letter's value.
+    /// The symbol's value.
     pub value: fn(&Inputs) -> BoundedValue,
 }
 
@@ -31,7 +31,7 @@ pub struct Term {
 
 /// One way to write a polynomial.
 pub struct Formula {
-    /// The letters of the formula.
+    /// The symbols in the formula, such as `r1` or `x21.d21`.
     pub letters: &'static [Letter],
     /// The formula's terms.
     pub terms: &'static [Term],

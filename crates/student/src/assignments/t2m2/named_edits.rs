@@ -137,9 +137,11 @@ named_edits! {
         => "The vector from the particle to the half-plane is reversed"
         => "x - p is used instead of p - x";
     X_ONLY "x-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| drop_component(inputs, |vector| &mut vector.y))
-        => "The second components of all vectors are missing" => "all dot products are x x' without y y'";
+        => "The second components of all vectors are missing"
+        => "x x' is used instead of x x' + y y' in all dot products";
     Y_ONLY "y-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| drop_component(inputs, |vector| &mut vector.x))
-        => "The first components of all vectors are missing" => "all dot products are y y' without x x'";
+        => "The first components of all vectors are missing"
+        => "y y' is used instead of x x' + y y' in all dot products";
     CONSTANT_ALPHA "constant-alpha" [PE] 2.5: Formula(Subject::EdgeApproach, constant_alpha)
         => "alpha is treated as constant during the step"
         => "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t";

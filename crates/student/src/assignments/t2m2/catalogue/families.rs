@@ -142,7 +142,7 @@ const END_FAMILY: MistakeFamily = MistakeFamily {
         ("its particle's radius", &[Row("pe-first-end-radius"), Row("pe-second-end-radius")]),
         ("contact vector to it", &[Row("pe-contact-first-end"), Row("pe-contact-second-end")]),
         ("alone in the zone", &[Row("zones-one-endpoint"), Row("zones-other-endpoint")]),
-        ("not pushed", &[No("a student who omits one end omits the last"), Row("response-one-endpoint")]),
+        ("not pushed", &[No("no student forgets only the first end"), Row("response-one-endpoint")]),
     ],
 };
 
