@@ -47,8 +47,8 @@ impl LatePolicy {
     /// one. `None` means that the submission is in time, or that the assignment has no rule for late submissions.
     pub(crate) fn lateness(&self, own_due: Option<i64>, arrived_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // The delay is at max_days the allowed late days, even if an extension was withdrawn. Earlier late uploads keep
-        // their deduction even if late uploads are no longer accepted.
+        // The delay is at most the allowed number of late days, even if an extension was withdrawn. Earlier late
+        // uploads keep their deduction even if late uploads are no longer accepted.
         let max_days = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let mut days = ((arrived_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < arrived_at {

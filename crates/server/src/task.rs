@@ -37,7 +37,7 @@ pub struct Input {
     pub form: Form,
     /// The file's name, without dangerous characters.
     pub name: String,
-    /// The file's bytes in the store.
+    /// The digest and the size of the file in the store.
     #[serde(flatten)]
     pub artifact: Artifact,
 }
@@ -190,7 +190,7 @@ pub struct OutputFile {
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// The file's bytes in the store.
+    /// The digest and the size of the file in the store.
     #[serde(flatten)]
     pub artifact: Artifact,
 }

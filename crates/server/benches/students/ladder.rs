@@ -105,7 +105,7 @@ async fn empty(stage: &mut Stage) -> Result<()> {
 
 struct LadderStudent {
     client: Client,
-    /// The secret of the link that signs in once.
+    /// The secret of the sign-in link.
     secret: Option<String>,
     number: usize,
     round: usize,

@@ -169,7 +169,7 @@ fn parse_public_url(text: &str) -> Result<String, String> {
     Ok(text.trim_end_matches('/').to_owned())
 }
 
-/// Prints a link with which an administrator who cannot sign in otherwise can sign in once.
+/// Prints a sign-in link for an administrator who has no other way to sign in. It works once.
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]

@@ -196,7 +196,7 @@ async fn read_checker(grader: Option<&Path>) -> Option<String> {
 async fn run_grader(grader: Option<&Path>, arguments: &[&str]) -> Result<Vec<u8>> {
     let mut command = tokio::process::Command::new(find_grader(grader)?);
     command.args(arguments).stdin(std::process::Stdio::null()).kill_on_drop(true);
-    let output = tokio::time::timeout(ANSWER_TIMEOUT, command.output()).await.context("the grader hangs")??;
+    let output = tokio::time::timeout(ANSWER_TIMEOUT, command.output()).await.context("the grader timed out")??;
     if !output.status.success() {
         bail!("{}", String::from_utf8_lossy(&output.stderr).trim());
     }

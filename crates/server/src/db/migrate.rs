@@ -58,7 +58,7 @@ pub enum MigrateError {
         found: i64,
     },
     /// An applied change differs from the one in this program.
-    #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
+    #[error("change {number} ({name}) was applied with a different text: this program was built from changed sources")]
     Changed {
         /// The number of the change, from 1.
         number: i64,

@@ -72,14 +72,14 @@ pub struct Database {
     faults: LastFailure,
     /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
-    /// The turns of requests without priority. They limit how many of these requests use connections, or wait for them.
+    /// The permits of requests without priority limit how many of these requests use connections, or wait for them.
     turns: Arc<Semaphore>,
     has_priority: bool,
 }
 
 #[derive(Debug, Clone)]
 enum Engine {
-    /// An SQLite database. It has only one writer, so a single connection writes; readers do not wait for it.
+    /// A SQLite database. It has only one writer, so a single connection writes; readers do not wait for it.
     Sqlite {
         writer: SqlitePool,
         readers: SqlitePool,
@@ -159,7 +159,7 @@ impl Database {
         Self { has_priority: true, ..self.clone() }
     }
 
-    /// Waits for a turn, if one is needed.
+    /// Waits for a permit, if one is needed.
     async fn acquire_turn(&self) -> Result<Turn, sqlx::Error> {
         if self.has_priority {
             return Ok(None);
@@ -236,7 +236,7 @@ impl Database {
         }
     }
 
-    /// Begins a transaction, with a limited wait. Waits first for a turn, if turns are counted.
+    /// Begins a transaction, with a limited wait. Waits first for a permit, if permits are counted.
     async fn limit_wait<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
         make: fn(T) -> Inner,

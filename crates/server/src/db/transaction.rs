@@ -7,8 +7,8 @@ use std::{
 };
 use tokio::sync::OwnedSemaphorePermit;
 
-/// A transaction. Dropping it without [`commit`](Self::commit) rolls it back. Without priority it holds a turn until it
-/// ends ([`Database::with_priority`](super::Database::with_priority)).
+/// A transaction. Dropping it without [`commit`](Self::commit) rolls it back. Without priority it holds a permit until
+/// it ends ([`Database::with_priority`](super::Database::with_priority)).
 #[derive(Debug)]
 pub struct Transaction {
     inner: Inner,
@@ -40,7 +40,7 @@ impl LastFailure {
     }
 }
 
-/// A request's turn; `None` if the request has priority and needs no turn.
+/// A request's permit; `None` if the request has priority and needs no permit.
 pub(super) type Turn = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]

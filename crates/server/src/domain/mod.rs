@@ -152,7 +152,7 @@ impl App {
         &self.0.instruments
     }
 
-    /// Returns the URL of a link that signs in once.
+    /// Returns the URL of a sign-in link.
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public, secret.reveal())
     }

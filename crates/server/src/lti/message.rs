@@ -21,7 +21,7 @@ const MAX_MESSAGE_AGE: u64 = 3600;
 /// The reason why a message is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Rejection {
-    /// The message is not signed, or is signed with another algorithm than RS256.
+    /// The message is not signed with RS256.
     #[error("the message is not signed by RS256 with a named key")]
     Form,
     /// The platform has no key with this name.

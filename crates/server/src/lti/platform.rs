@@ -92,7 +92,7 @@ impl PlatformSettings {
         }
         if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))
         {
-            return Err(Problem::invalid("deployments must be a list of their numbers, with at least one"));
+            return Err(Problem::invalid("deployments must be a list of at least one deployment ID"));
         }
         ensure(
             self.audience.as_deref().is_none_or(is_word),

@@ -19,7 +19,7 @@ use url::Url;
 /// The number of scores that are sent in parallel. A hanging platform then delays only a few others.
 const MAX_PARALLEL: usize = 4;
 
-/// The time after which jobs are searched even without a notification.
+/// The time after which the search for jobs is repeated even without a notification.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(2);
 
 /// The maximum number of tries while a platform does not answer. With waits of up to an hour, the tries last for more

@@ -163,7 +163,7 @@ async fn receive_into(inbox: &Inbox<'_>, request: Request, max_bytes: u64) -> Re
             }
             Some("form") => form = Some(short_text(inbox, field).await?),
             Some("key") => key = Some(short_text(inbox, field).await?),
-            _ => return Err(Problem::invalid("the form must have a field file, and may have form and key")),
+            _ => return Err(Problem::invalid("the form must have the field `file`, and may have `form` and `key`")),
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;

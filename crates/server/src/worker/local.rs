@@ -12,7 +12,7 @@ use crate::{
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
-/// The time after which jobs are searched even without a notification.
+/// The time after which the search for jobs is repeated even without a notification.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The minimum extra time that a job may take beyond its grading.

@@ -64,7 +64,7 @@ fn forms_of_strangers_do_no_harm() {
         }
         sound += usize::from(entries::form(&bytes));
     }
-    assert!(sound > tries / 50, "{sound} of {tries} are forms: changes that are all refused reach nothing");
+    assert!(sound > tries / 50, "{sound} of {tries} are forms: changes that are all rejected reach nothing");
 }
 
 #[test]
@@ -106,5 +106,5 @@ fn archives_of_strangers_do_no_harm() {
         }
         sound += usize::from(entries::archive(&bytes));
     }
-    assert!(sound > tries / 50, "{sound} of {tries} are archives: changes that are all refused reach nothing");
+    assert!(sound > tries / 50, "{sound} of {tries} are archives: changes that are all rejected reach nothing");
 }

@@ -77,7 +77,7 @@ pub struct NewToken {
     pub token: String,
 }
 
-/// A link with which an account signs in once. It is valid for a week.
+/// A sign-in link of an account. It works once, within a week.
 #[derive(Serialize, ToSchema)]
 pub struct Link {
     /// The link's URL; `None` if the account existed already.
@@ -188,8 +188,8 @@ pub(in crate::domain) async fn end_session(transaction: &mut Transaction, sessio
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Creates a link that signs in once, and invalidates the account's unused links. `method` is the sign-in method of the
-/// person who requests the link.
+/// Creates a sign-in link that works once, and invalidates the account's unused links. `method` is the sign-in method
+/// of the person who requests the link.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,

@@ -16,8 +16,8 @@ const ASSIGNMENT: (&str, &str) = ("m1", "Theme 2, Milestone 2: continuous-time c
 const STUDENT: (&str, &str) = ("student", "A student");
 
 impl App {
-    /// Creates the example course, with an assignment and a student, if there is no course yet. Returns a link that
-    /// signs the student in once; `None` if the example was created before.
+    /// Creates the example course, with an assignment and a student, if there is no course yet. Returns a sign-in link
+    /// for the student; `None` if the example was created before.
     ///
     /// # Errors
     ///

@@ -33,7 +33,7 @@ pub struct MemberLine {
     pub(crate) may_be_heading: bool,
     /// The error in the line; any error stops the whole import.
     pub(crate) error: Option<String>,
-    /// A link with which the member signs in once; `None` if the account existed already.
+    /// The member's sign-in link; `None` if the account existed already.
     pub(crate) link: Option<String>,
 }
 

@@ -51,9 +51,9 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Makes a person a member, or changes their role. A missing account is created, with a link that signs in once. A
-    /// member whose account belongs to this course alone gets the new name; administrators can rename all members. Only
-    /// an administrator may add an account that another course's staff made, because that course's staff can sign in as
+    /// Makes a person a member, or changes their role. A missing account is created, with a sign-in link. A member
+    /// whose account belongs to this course alone gets the new name; administrators can rename all members. Only an
+    /// administrator may add an account that another course's staff made, because that course's staff can sign in as
     /// this account.
     ///
     /// # Errors
@@ -164,7 +164,7 @@ impl Staff {
         if self.account.is_admin { SignInMethod::Own } else { SignInMethod::ByStaff }
     }
 
-    /// Creates a link that signs a person in once.
+    /// Creates a sign-in link for a person. It works once.
     async fn create_link(
         &self,
         transaction: &mut Transaction,
@@ -204,9 +204,9 @@ impl Staff {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns a new link that signs a student in once. Staff can create it only for accounts that belong to this
-    /// course alone: this course created them, and they are in no other course and not connected to a provider or a
-    /// platform. Otherwise staff could act as a person with rights elsewhere.
+    /// Returns a new sign-in link for a student. It works once. Staff can create it only for accounts that belong to
+    /// this course alone: this course created them, and they are in no other course and not connected to a provider or
+    /// a platform. Otherwise staff could act as a person with rights elsewhere.
     ///
     /// # Errors
     ///

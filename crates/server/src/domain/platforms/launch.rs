@@ -35,7 +35,7 @@ pub struct LoginRequest {
     pub lti_message_hint: Option<String>,
     /// The client ID of this service on the platform, if the platform sent it.
     pub client_id: Option<String>,
-    /// The number of this service's deployment on the platform.
+    /// The ID of this service's deployment on the platform.
     pub lti_deployment_id: Option<String>,
 }
 

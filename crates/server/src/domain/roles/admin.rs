@@ -126,8 +126,8 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Creates an account, or gives or takes an administrator's rights. Returns a link that signs in once. If the
-    /// account was closed, it is opened again.
+    /// Creates an account, or gives or takes an administrator's rights. Returns a sign-in link. If the account was
+    /// closed, it is opened again.
     ///
     /// # Errors
     ///
@@ -246,8 +246,8 @@ impl App {
         self.new_worker_token(name, first.ok_or_else(|| Problem::not_found("administrator"))?.int("id")?).await
     }
 
-    /// Returns the link of a new server, which signs its first administrator in; `None` after an administrator has
-    /// signed in.
+    /// Returns the sign-in link for the first administrator of a new server; `None` after an administrator has signed
+    /// in.
     ///
     /// # Errors
     ///

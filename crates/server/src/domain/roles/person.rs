@@ -41,7 +41,7 @@ impl Person {
     /// create rights that outlive it.
     pub(in crate::domain) fn require_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
-        session.ok_or_else(|| Problem::sign_in_again("neither a token nor a session that a token began can do this"))
+        session.ok_or_else(|| Problem::sign_in_again("tokens, and sessions that began with a token, cannot do this"))
     }
 
     /// Returns the session if the person signed in recently, so that somebody who finds an open browser cannot create

@@ -60,7 +60,7 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Creates an account or changes it, and returns a link that signs in once.
+    /// Creates an account or changes it, and returns a sign-in link, which works once.
     put "/api/v1/accounts/{login}" "administration"
         set_account(admin: Admin, { login }, input: AccountUpdate) -> Link:
             admin.set_account(&login, &input.name, input.is_admin);

@@ -76,11 +76,11 @@ answers! { CREATED:
 
 answers! { OK:
     /// Makes a person a member of the course. If the person has no account, it is created, and the answer contains a
-    /// link that signs in once.
+    /// sign-in link, which works once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
         set_member(staff: Staff, { login }, input: MemberInput) -> Link:
             staff.set_member(&login, &input.name, &input.role, input.seen_event);
-    /// Creates a link that signs a student of the course in once.
+    /// Creates a sign-in link for a student of the course. It works once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
     /// Lists the courses of the person who is signed in.

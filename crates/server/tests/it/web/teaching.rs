@@ -198,7 +198,7 @@ fn check_names(server: &Server, admin: &Client, teacher: &Client) {
         student.wait_for_grade("physics", id);
     }
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    let (same, table) = (class.split("byte for byte").nth(1), class.split("<tbody>").nth(1));
+    let (same, table) = (class.split("Identical programs").nth(1), class.split("<tbody>").nth(1));
     assert!(same.is_some_and(|same| same.contains("The dora, The emil</summary>")), "{class}");
     assert!(table.is_some_and(|table| table.contains("a step is wrong\">a step is wrong</td>")), "{class}");
     assert!(class.contains("data-copy=\"dora, emil\""), "{class}");
@@ -240,7 +240,7 @@ fn check_bad_marks(teacher: &Client, ada: &Client, id: i64) {
 /// Checks that a submission is compared with one of another student by login, and with the same student's by number.
 fn check_beside(teacher: &Client, [one, mended]: [i64; 2]) {
     let page = teacher.get(&format!("/c/physics/s/{one}/beside?with=ada")).expect(200).text();
-    assert!(page.contains("Both are right on the same scenes") && page.contains("of 100"), "{page}");
+    assert!(page.contains("Both are accepted on the same scenes") && page.contains("of 100"), "{page}");
     teacher.get(&format!("/c/physics/s/{one}/beside?with=carl")).expect(404);
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);
     let page = teacher.get(&format!("/c/physics/s/{mended}/beside?with=1")).expect(200).text();
