@@ -1,12 +1,12 @@
-//! Links the programs statically where the machine has the C library's archives. A grader is started once for every
-//! trace. Half of a small scene's time was spent on loading three shared libraries with 15,000 relocations.
+//! Links the programs statically if the machine has the C library's archives. A grader is started once for every trace,
+//! and loading three shared libraries with 15,000 relocations took half the time of a small scene.
 //!
-//! Rust's own switch for it, `-C target-feature=+crt-static`, can't be set for a package, and set for everything it
-//! forbids procedural macros. So the linker is led: a folder that is searched before the system's holds scripts that
-//! stand for the shared libraries and name the archives instead. Where a trial shows that this does not work, programs
-//! are linked as usual; `FOSSSIM_LINK=shared` asks for that.
+//! Rust's own switch, `-C target-feature=+crt-static`, can't be set for a single package, and if it is set for all
+//! packages, procedural macros can't be built. Therefore the linker first searches a folder with linker scripts. They
+//! have the names of the shared libraries, but name the archives. If a trial program can't be linked in this way, or if
+//! `FOSSSIM_LINK=shared` is set, programs are linked as usual.
 //!
-//! Besides, it hands over the module of the browser's page, where it is asked to.
+//! The script also includes the module of the browser's page, if `FOSSSIM_MODULE` names it.
 #![forbid(unsafe_code)]
 use std::{
     env, fs, io,
@@ -14,10 +14,10 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// The libraries that Rust's standard library asks the linker for.
+/// The shared libraries that Rust's standard library requests from the linker.
 const SHARED: [&str; 7] = ["gcc_s", "c", "m", "rt", "pthread", "dl", "util"];
 
-/// The archives that it gets for each of them, which need one another.
+/// The linker script for each shared library. The archives depend on each other, so each script names all of them.
 const ARCHIVES: &str = "GROUP(-l:libc.a -l:libm.a -l:libgcc_eh.a -l:libgcc.a)\n";
 
 fn main() {
@@ -39,8 +39,8 @@ fn main() {
     }
 }
 
-/// Has the module of the browser's page compiled into the program, where `FOSSSIM_MODULE` names it
-/// (`scripts/browser-page`): nobody else needs the target that it is compiled for.
+/// Includes the module of the browser's page in the program, if `FOSSSIM_MODULE` names it (`scripts/browser-page`).
+/// Other builds do not need the WebAssembly target.
 fn take_module() {
     println!("cargo:rerun-if-env-changed=FOSSSIM_MODULE");
     println!("cargo:rustc-check-cfg=cfg(has_module)");
@@ -52,12 +52,12 @@ fn take_module() {
     println!("cargo:rustc-cfg=has_module");
 }
 
-/// Returns the words behind all that Rust says to the linker: of `-pie` and `-no-pie` the last one counts.
+/// Returns the linker arguments, which follow Rust's own, because the last one of `-pie` and `-no-pie` counts.
 fn arguments(folder: &Path) -> [String; 3] {
     [format!("-L{}", folder.display()), "-static".to_owned(), "-no-pie".to_owned()]
 }
 
-/// Writes the scripts, and tries them on a program: whether it is linked, and runs.
+/// Writes the linker scripts, and returns whether a trial program can be linked with them and runs.
 fn lead(folder: &Path) -> io::Result<bool> {
     fs::create_dir_all(folder)?;
     for shared in SHARED {

@@ -48,7 +48,7 @@ fn main() {
     }
 }
 
-/// Writes right programs, each with different bytes.
+/// Writes correct programs, each with different bytes.
 fn hand_in(folder: &Path, programs: usize) {
     let sample = std::fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
     for number in 0..programs {
@@ -67,7 +67,7 @@ fn grade(folder: &Path, suite: &str, jobs: usize) -> Measured {
     let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-oracle"));
     command.current_dir(folder).args(["grade", "submissions", "--suite", suite, "--jobs", &jobs.to_string()]);
     command.arg("--output").arg(&results).stdout(Stdio::null()).stderr(Stdio::null());
-    assert!(command.status().expect("a process").success(), "a right program was not accepted");
+    assert!(command.status().expect("a process").success(), "a correct program was not accepted");
     let (wall, after) = (begun.elapsed(), children());
     let time = |t: libc::timeval| Duration::new(t.tv_sec.unsigned_abs(), t.tv_usec.unsigned_abs() as u32 * 1000);
     Measured {

@@ -133,7 +133,7 @@ fn parts() {
     let own = by_both(&scenes.iter().map(|(_, trace)| &trace[..]).collect::<Vec<_>>());
     let other = by_both(&rescaled.iter().map(Vec::as_slice).collect::<Vec<_>>());
     println!(
-        "- Judging right traces with a factor by both books takes {:.1} times as long as identical ones.",
+        "- Judging correct traces with a factor by both books takes {:.1} times as long as identical ones.",
         ratio(other, own)
     );
 }

@@ -141,7 +141,7 @@ pub fn judge(bytes: &[u8]) {
         let is_accepted = outcome.ruling(book) == Ruling::Accepted;
         assert!(account.wrong_steps <= u64::from(outcome.steps_judged), "a step is wrong once");
         assert!(!is_accepted || account.wrong_steps == 0, "what is accepted has no wrong step");
-        assert!(is_accepted || outcome.right_steps(book) < outcome.steps, "what is refused is not all right");
+        assert!(is_accepted || outcome.right_steps(book) < outcome.steps, "a rejected trace has a wrong step");
     }
     let finite = |value: &f64| value.is_finite();
     if outcome.ruling(Book::Fair) == Ruling::Accepted {
@@ -163,7 +163,7 @@ pub fn suite(bytes: &[u8]) {
         }
         Err(error) => {
             let text = error.to_string();
-            assert!(!text.trim().is_empty(), "a refusal without a reason");
+            assert!(!text.trim().is_empty(), "a rejection without a reason");
         }
     }
 }

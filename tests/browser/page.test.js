@@ -89,7 +89,7 @@ test("the page is one file of a bounded size, whose policy names no address", (t
   assert.ok(!/<(script|link|img)[^>]*\b(src|href)=/.test(page.replace(/srcdoc/g, "")));
 });
 
-test("a right trace is recognized and accepted", async () => {
+test("a correct trace is recognized and accepted", async () => {
   const { page, complaints, close } = await openPage(browser, html);
   await drop(page, trace("ContinuousTimeTests/head-on-equal-masses"));
   assert.match(await readStatus(page), /^trace\.bin: accepted, judged in/);

@@ -196,7 +196,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   await page.getByRole("heading", { name: "Which course is this?" }).waitFor();
   await checkAccessibility(page);
   assert.equal(await page.getByLabel("Name in URLs").inputValue(), "phys-1");
-  await page.getByRole("button", { name: "Make the course" }).click();
+  await page.getByRole("button", { name: "Create the course" }).click();
   // There is no assignment yet, so it is created during the choice.
   await page.getByLabel("Title").fill("Milestone one");
   await checkAccessibility(page);

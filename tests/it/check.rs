@@ -296,7 +296,7 @@ fn the_bundled_trace_of_the_readme_shows_its_mistake() {
     assert!(out.starts_with("WRONG ANSWER") && out.contains("coefficient of t^2"), "{out}");
 }
 
-/// Returns a right trace that ends inside a list of polynomials, like that of a program that crashed or was killed.
+/// Returns a correct trace that ends inside a list of polynomials, like that of a program that crashed or was killed.
 fn broken_off(trace: &[u8], length: usize) -> String {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BEAM);

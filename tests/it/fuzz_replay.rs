@@ -26,7 +26,7 @@ fn scene_seeds_do_no_harm() {
         entries::scene(&bytes);
         accepted += usize::from(original::read(&bytes).is_ok());
     }
-    assert!(accepted > 0, "seeds that are all refused do not reach the simulator");
+    assert!(accepted > 0, "seeds that are all rejected do not reach the simulator");
 }
 
 #[test]

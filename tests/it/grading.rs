@@ -61,7 +61,8 @@ const FLOOD: &str = "x=0123456789abcdef; for i in 1 2 3 4 5 6 7 8 9 10 11 12; do
 const SLEEP: &str = "kill -STOP $$";
 
 /// Puts programs into `submissions/` that are scripts, and returns their paths. Each runs its commands, in which
-/// `RIGHT` writes a right trace of [`SCRIPTED_SCENE`], and `HALF` the first half of it. Programs must not start others.
+/// `RIGHT` writes a correct trace of [`SCRIPTED_SCENE`], and `HALF` the first half of it. Programs must not start
+/// others.
 fn submit_scripts(workspace: &Workspace, programs: &[(&str, &str)]) -> Vec<String> {
     let suite = SUITE.split("[[group]]").next().unwrap_or_default();
     let group = format!("[[group]]\nname = \"Zones\"\nscenes = [\"asset:{SCRIPTED_SCENE}\"]\npoints = 10\n");

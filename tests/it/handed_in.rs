@@ -28,7 +28,7 @@ fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
     }
 }
 
-/// The program itself can act as a right submission, so it must not be accepted as one.
+/// The program itself can act as a correct submission, so it must not be accepted as one.
 #[test]
 fn the_program_itself_earns_no_points() {
     let Some(workspace) = workspace() else { return };

@@ -1,4 +1,4 @@
-//! The fast path of judging for right traces has the same outcome as the full path.
+//! The fast path of judging for correct traces has the same outcome as the full path.
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::{Scene, original},

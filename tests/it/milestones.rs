@@ -1,4 +1,4 @@
-//! The course's milestones: each has a suite of scenes that its programs can run, and that accepts right programs.
+//! The course's milestones: each has a suite of scenes that its programs can run, and that accepts correct programs.
 use super::{
     grading,
     workspace::{Workspace, simulate},
@@ -188,7 +188,7 @@ fn a_suite_says_which_known_mistakes_no_scene_of_it_shows() {
     assert!(part(&one, "near-pairs").0 < seen_by_all && one.contains("not shown: "), "{one}");
 }
 
-/// Scenes with right traces also count, and a mistake that only one scene shows is reported next to the most frequent
+/// Scenes with correct traces also count, and a mistake that only one scene shows is reported next to the most frequent
 /// one.
 #[test]
 fn a_grade_names_what_its_scenes_show_together() {

@@ -39,7 +39,7 @@ int main(int argc, char **argv) {
 }
 "#;
 
-/// Returns a folder that all users may use, with the grader and a right program in it, or `None` unless we are root.
+/// Returns a folder that all users may use, with the grader and a correct program in it, or `None` unless we are root.
 fn open_to_all() -> Option<Workspace> {
     let workspace = Workspace::new();
     if workspace.run(["doctor"]).code != Some(0) {

@@ -169,7 +169,7 @@ fn right_programs_get_all_points_and_wrong_ones_less() {
     assert!(misjudged.is_empty(), "{misjudged:#?}");
 }
 
-/// A smallest scene is wrong for the same reason in a second run, and right for every right program.
+/// A smallest scene is wrong for the same reason in a second run, and right for every correct program.
 #[test]
 fn smallest_scenes_show_what_they_were_made_for() {
     let Some(originals) = Originals::find() else { return };

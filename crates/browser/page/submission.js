@@ -319,7 +319,7 @@ run() {
 $("save-script").addEventListener("click", () =>
   saveScript().catch(({ message }) => ($("marks-said").textContent = message)),
 );
-// The example has a wrong trace, and right traces of scenes in the same group. The mistake concerns edges, and the
+// The example has a wrong trace, and correct traces of scenes in the same group. The mistake concerns edges, and the
 // right scenes have no edges.
 $("example-all").addEventListener("click", async () => {
   const flawed = await grading.oracle.ask({ do: "example" });

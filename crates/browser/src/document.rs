@@ -1,7 +1,7 @@
 //! The page. It is a single HTML file with the module embedded, and loads nothing else.
 //!
 //! The policy of the page allows its script and its style, and those of reports in it, by their digests. It also allows
-//! the module, and a worker that the page creates. It does not allow any address.
+//! the module, and a worker that the page creates. It does not allow any connection.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use fosssim_report::page::{ELEMENTS, digest, framed_digests, style};

@@ -67,7 +67,7 @@ impl Read for DroppedFile<'_> {
     }
 }
 
-/// Decompresses a zstd file. If the file is damaged, only this copy is at fault, and the error does not concern the
+/// Decompresses a zstd file. If the compressed data is damaged, the error is about this copy of the file, not about the
 /// trace.
 struct ZstdReader<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
@@ -113,7 +113,9 @@ impl<R: BufRead> Frames<R> {
                     let (bytes, decoder) = frame.into_parts();
                     let (stored, computed) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
                     if stored.is_some() && stored != computed {
-                        return Err(io::Error::other("the content differs from the compressed data; copy it again"));
+                        return Err(io::Error::other(
+                            "the decompressed content does not match its checksum; copy the file again",
+                        ));
                     }
                     Self::Next(bytes)
                 }

@@ -15,7 +15,7 @@ pub enum FileError {
         /// The name of the file, with escapes.
         name: String,
     },
-    /// The name is the name of a folder, a link or a device, and not of a regular file.
+    /// The name belongs to a folder, a link or a device, not to a regular file.
     #[error("{name} is {what}, not a regular file")]
     NotRegular {
         /// The name of the entry, with escapes.
@@ -23,12 +23,12 @@ pub enum FileError {
         /// The kind of entry that has this name.
         what: &'static str,
     },
-    /// The file has several names. Some of them may be outside of the folder.
-    #[error("{name} is a hard link: the file has {links} names")]
+    /// The file has several hard links. Some of them may be outside the folder.
+    #[error("{name} has {links} hard links, but only one is allowed")]
     Linked {
         /// The name of the file, with escapes.
         name: String,
-        /// The number of names that the file has.
+        /// The number of the file's hard links.
         links: u64,
     },
     /// The file is too long.

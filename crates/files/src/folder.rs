@@ -160,10 +160,10 @@ impl Folder {
         Ok((file, length))
     }
 
-    /// Opens a file as [`Folder::open_file`] does. The file must not have another name.
+    /// Opens a file as [`Folder::open_file`] does. The file must have only one hard link.
     ///
     /// # Errors
-    /// Fails like [`Folder::open_file`]. Also fails if the file has a second name.
+    /// Fails like [`Folder::open_file`]. Also fails if the file has several hard links.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
         let (file, length) = self.open_file(OsStr::new(name), max_bytes)?;
         let links = require_regular_file(&file, || escape(OsStr::new(name)))?.nlink();
@@ -218,8 +218,8 @@ impl Folder {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// Returns the identity of a regular file and its number of names, without opening it. Returns `None` for links and
-    /// for anything else.
+    /// Returns the identity of a regular file and its number of hard links, without opening it. Returns `None` for
+    /// links and for anything else.
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.split_parent(Path::new(name)).ok()?;
         let stat = statat(&*folder, last, AtFlags::SYMLINK_NOFOLLOW).ok();
@@ -301,7 +301,7 @@ pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
 }
 
 /// Opens the regular file at `path`, and returns its length. Opening never waits. If the path ends with a link, it is
-/// followed only with `follow`. The file may have several names.
+/// followed only with `follow`. The file may have several hard links.
 ///
 /// # Errors
 /// Fails if the file does not exist, is not a regular file, or cannot be accessed.

@@ -39,7 +39,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The identity of a file, which consists of its device and its inode. All names of a file have the same identity.
+/// The identity of a file, which consists of its device and its inode. All hard links to a file have the same identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Identity(u64, u64);
 

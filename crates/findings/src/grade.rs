@@ -95,7 +95,7 @@ pub struct Grade {
     /// The keys of mistakes that accepted scenes refute.
     #[serde(rename = "refuted")]
     pub refuted_keys: Vec<String>,
-    /// The milestone that the program probably implements, if it is another one than the suite's.
+    /// The milestone that the program probably implements, if it is not the suite's.
     #[serde(rename = "looks_like")]
     pub inferred_milestone: Option<Assignment>,
     /// The common features of the scenes in which the program crashes or exceeds a limit, if the hints allow it.

@@ -103,9 +103,9 @@ impl<R: Read> Read for CountedReader<'_, R> {
 /// The depth of the search for explanations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchDepth {
-    /// Only the first value that is not finite is searched. This is quick.
+    /// Only the first value that is not finite is searched for, which is quick.
     NotFinite,
-    /// The first value that is not finite is searched, and then likely mistakes.
+    /// The search is for the first value that is not finite, and then for likely mistakes.
     Mistakes,
 }
 

@@ -37,7 +37,7 @@ fn scene(job: &Job) -> Scene {
     fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene
 }
 
-/// Returns the first `steps` steps of the right trace.
+/// Returns the first `steps` steps of the correct trace.
 fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
@@ -47,7 +47,7 @@ fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     recorder.finish().expect("memory").0
 }
 
-/// Returns the right trace of the scene in a job's working folder.
+/// Returns the correct trace of the scene in a job's working folder.
 pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     let scene = scene(job);
     trace(&scene, scene.step_count())

@@ -45,7 +45,7 @@ pub struct Submission {
     /// The name of the program or archive in the folder `path`, if the contents of that folder are not trusted. Links
     /// in it are not followed.
     pub program: Option<String>,
-    /// The identity that the program's file had when submissions were searched.
+    /// The identity that the program's file had when submissions were searched for.
     pub file: Option<ProgramFile>,
 }
 

@@ -162,7 +162,7 @@ pub fn load_with(
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
 ) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_with_problems(text);
-    // Scenes are searched even if there are other errors, so that all errors are reported together.
+    // The search for scenes runs even if there are other errors, so that all errors are reported together.
     let plan = resolve(suite, files, &mut problems);
     if problems.is_empty() {
         return Ok(plan);
@@ -231,7 +231,7 @@ mod tests {
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
         assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
         assert!(error.contains("is in group \"b\" already"), "{error}");
-        // The scenes are searched even if another part is wrong.
+        // The search for scenes runs even if another part is wrong.
         let both = text.replacen("name = \"x\"", "name = \"x\"\nhint = \"what\"", 1);
         let error = load_suite(&both, Path::new("nowhere")).expect_err("wrong").to_string();
         assert!(error.starts_with("3:1: unknown key `hint` in the suite: did you mean `hints`?\n6:11: no "), "{error}");

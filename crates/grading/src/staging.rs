@@ -145,7 +145,7 @@ impl StagedProgram {
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(describe_error_at(path))?;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
-    // A modified copy of the grader with this name would also write right traces, so the name is checked as well.
+    // A modified copy of the grader with this name would also write correct traces, so the name is checked as well.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
     let why = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
         Ok(staged) => {

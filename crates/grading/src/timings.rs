@@ -17,7 +17,7 @@ pub enum RunPart {
     Judging,
     /// The working folder is emptied.
     CleanUp,
-    /// The mistake is searched.
+    /// The mistake is searched for.
     Explaining,
     /// Cards for pages are drawn.
     Drawing,

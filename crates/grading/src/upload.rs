@@ -8,7 +8,7 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
 /// The maximum number of entries that a message names.
 const MAX_NAMED_ENTRIES: usize = 6;
-/// The maximum number of entries among which a program is searched in subfolders.
+/// The maximum number of entries that are checked when subfolders are searched for a program.
 const MAX_SCANNED_ENTRIES: u32 = 2000;
 const MAX_DEPTH: u32 = 3;
 

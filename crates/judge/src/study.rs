@@ -80,7 +80,7 @@ pub struct Answer {
 impl Answer {
     fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, EndlessSearch> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
-        // Every search was made before, separately, and has ended.
+        // Each search was made separately before, and has ended.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
         let normal = if time <= 1.0 { motion.normal(time) } else { None };
         let decision = match normal {

@@ -28,14 +28,14 @@ pub fn is_accepted(outcome: &Outcome) -> bool {
     outcome.fair.as_ref().is_some_and(|fair| fair.verdict == FairVerdict::Accepted)
 }
 
-/// A scene with the trace of a right program.
+/// A scene with the trace of a correct program.
 #[derive(Debug)]
 pub struct WatchedScene {
     /// The scene's name.
     pub name: String,
     /// The scene that the programs simulate.
     pub scene: Scene,
-    /// The trace of a right program.
+    /// The trace of a correct program.
     pub right: Vec<u8>,
 }
 

@@ -16,7 +16,7 @@
 //! # }
 //! # let (trace, _) = recorder.finish()?;
 //!
-//! // There is nothing to explain about a right trace.
+//! // There is nothing to explain about a correct trace.
 //! assert!(diagnose::explain(&scene, &trace).is_empty());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

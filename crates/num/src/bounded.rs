@@ -3,8 +3,8 @@
 //! A [`BoundedValue`] is a computed value with a bound: in whatever order a correct program evaluates the same formula,
 //! its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
 //! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3),
-//! with the modulus of the operands instead of the result's for sums. Canceling terms therefore keep their weight, and
-//! the bound also covers other orders of summation. Bounds are never written to a trace.
+//! with the absolute values of the operands instead of the result's for sums. Canceling terms therefore keep their
+//! weight, and the bound also covers other orders of summation. Bounds are never written to a trace.
 use super::{
     lanes::{Modulus, Number, Plane},
     vector::Vec2,
@@ -20,7 +20,8 @@ pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 pub struct BoundedValue<N = f64> {
     /// The computed value.
     pub value: N,
-    /// The sum of the moduli of all rounded intermediate results, weighted by their effect; at least 0, or NaN.
+    /// The sum of the absolute values of all rounded intermediate results, weighted by their effect; at least 0, or
+    /// NaN.
     pub bound: N,
 }
 
@@ -112,8 +113,8 @@ impl Mul<BoundedValue> for f64 {
     }
 }
 
-/// The maximum modulus of a number; differences count as sums. With it, a formula gives upper bounds of its results and
-/// their error bounds, whatever the signs.
+/// The maximum absolute value of a number; differences count as sums. With it, a formula gives upper bounds of its
+/// results and their error bounds, whatever the signs.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Magnitude(pub f64);
 

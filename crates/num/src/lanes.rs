@@ -15,7 +15,7 @@ pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = 
 
 impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N> {}
 
-/// A number with a modulus.
+/// A number that has an absolute value.
 pub trait Modulus {
     /// Returns the absolute value.
     #[must_use]

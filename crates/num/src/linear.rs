@@ -1,8 +1,8 @@
 //! Gaussian elimination with complete pivoting, in the original's order of operations (simulation.md 5).
 //!
 //! It serves the implicit integrators, whose matrices have two rows per particle. Every product, subtraction and
-//! division happens once and in the order of the specification. The order in which moduli are compared is free: each
-//! column's largest is found while its entries are computed.
+//! division happens once and in the order of the specification. The order in which absolute values are compared is
+//! free: each column's largest is found while its entries are computed.
 use super::lanes::{Instructions, LaneWork, Lanes, Simd};
 
 /// The number of columns that a triangular solve treats as one panel.
@@ -24,8 +24,8 @@ pub struct Workspace {
 /// Solves `A d = rhs` in place: `matrix` is n x n **column-major** and destroyed, `rhs` becomes the solution.
 ///
 /// n is even. A rank-deficient matrix gives zeros for the unknowns beyond its rank: elimination stops when the largest
-/// remaining modulus is below 2^-52 times the first pivot. NaN entries spread by the arithmetic; no value makes it hang
-/// or panic.
+/// remaining absolute value is below 2^-52 times the first pivot. NaN entries spread by the arithmetic; no value makes
+/// it hang or panic.
 ///
 /// # Panics
 /// Panics if the length of `matrix` is not the square of that of `rhs`.
@@ -59,7 +59,7 @@ struct Decomposition<'a> {
     n: usize,
     row_swaps: &'a mut Vec<usize>,
     column_order: &'a mut Vec<usize>,
-    /// The largest modulus in the rows that have no pivot yet. NaN is ignored.
+    /// The largest absolute value in the rows that have no pivot yet. NaN is ignored.
     moduli: &'a mut Vec<f64>,
 }
 
@@ -98,8 +98,8 @@ impl LaneWork for Decomposition<'_> {
 }
 
 impl Decomposition<'_> {
-    /// Returns the entry of largest modulus in rows and columns from k on. If several have it, the first one column by
-    /// column is returned. NaN never replaces another entry, but a NaN at the start stays.
+    /// Returns the entry with the largest absolute value in rows and columns from k on. If several have it, the first
+    /// one column by column is returned. NaN never replaces another entry, but a NaN at the start stays.
     #[inline(always)]
     fn pivot(&self, k: usize) -> Pivot {
         let n = self.n;
@@ -182,7 +182,7 @@ struct Pivot {
     modulus: f64,
 }
 
-/// Returns the largest modulus of a column's entries. NaN is ignored.
+/// Returns the largest absolute value of a column's entries. NaN is ignored.
 #[inline(always)]
 fn largest_modulus<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
@@ -193,7 +193,7 @@ fn largest_modulus<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     alone.iter().fold(find_largest_modulus(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
 }
 
-/// Returns the largest of the moduli of entries. With some instructions the larger of a number and NaN is NaN.
+/// Returns the largest absolute value of the entries. With some instructions the larger of a number and NaN is NaN.
 #[inline(always)]
 fn find_largest_modulus<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
     let largest = moduli.largest();

@@ -1,10 +1,10 @@
 //! All tolerances of the project: unit, meaning, and the effect of changes.
 
-/// Leading coefficients below this are dropped before a polynomial is solved or logged (absolute, strict;
+/// Leading coefficients below this value are dropped before a polynomial is solved or logged (absolute, strict;
 /// root-finder.md 15.1). Changing it changes every trace.
 pub const MIN_LEADING_COEFFICIENT: f64 = 1e-12;
 
-/// Zeros whose imaginary part is below this count as real (absolute, strict; root-finder.md 15.3).
+/// Zeros with a smaller imaginary part count as real (absolute, strict; root-finder.md 15.3).
 pub const MIN_IMAGINARY_PART: f64 = 1e-8;
 
 /// Parity: contact normals may differ by this Euclidean distance (scene length unit; oracle-behavior.md 6).
@@ -13,7 +13,8 @@ pub const PARITY_NORMAL_DISTANCE: f64 = 1e-9;
 /// Parity: the absolute bound for the difference of a rescaled coefficient (oracle-behavior.md 6).
 pub const PARITY_COEFFICIENT_DIFFERENCE: f64 = 1e-10;
 
-/// Parity: polynomials count as zero if the sum of their coefficients' moduli is below this (oracle-behavior.md 6).
+/// Parity: polynomials count as zero if the sum of their absolute coefficients is below this bound (oracle-behavior.md
+/// 6).
 pub const PARITY_ZERO_COEFFICIENT_SUM: f64 = 1e-10;
 
 /// Parity: bound of the accumulated position and velocity residuals (strict; oracle-behavior.md 6).
@@ -22,11 +23,11 @@ pub const PARITY_ACCUMULATED_RESIDUAL: f64 = 1e-6;
 /// Parity: bound of the maximum position and velocity residuals (strict; oracle-behavior.md 6).
 pub const PARITY_MAX_RESIDUAL: f64 = 1e-10;
 
-/// In the contest, bodies closer than this do not interact (scene length unit; simulation.md 3.1). Changing it changes
-/// traces of bodies at the same position.
+/// In the contest, bodies at a smaller distance do not interact (scene length unit; simulation.md 3.1). Changing it
+/// changes traces of bodies at the same position.
 pub const CONTEST_MIN_DISTANCE: f64 = 1e-10;
 
-/// Newton's method of implicit-euler stops when the update's norm is below this (velocity unit; simulation.md 4).
+/// Newton's method of implicit-euler stops when the update's norm is below this bound (velocity unit; simulation.md 4).
 pub const NEWTON_UPDATE_NORM: f64 = 1e-9;
 
 /// The maximum number of iterations of Newton's method in implicit-euler. The original has no limit and hangs
@@ -34,32 +35,31 @@ pub const NEWTON_UPDATE_NORM: f64 = 1e-9;
 /// records.
 pub const MAX_NEWTON_ITERATIONS: u32 = 10_000;
 
-/// Certificate: a line's zero is near if its modulus is at most this (fraction of the step). With larger values,
-/// rounding could decide the root finder's sample one step beyond the zero (certificate, closed forms).
+/// Certificate: a line's zero is near if its absolute value is at most this limit (fraction of the step). With larger
+/// values, rounding could decide the root finder's sample one step beyond the zero (certificate, closed forms).
 pub const LINE_NEAR_LIMIT: f64 = (1_u64 << 40) as f64;
 
 /// Certificate: a parabola's zeros are near if the coefficient of degree 2 - i is at most the leading one times the
-/// i-th power of this. With larger values, rounding could decide the samples.
+/// i-th power of this limit. With larger values, rounding could decide the samples.
 pub const PARABOLA_NEAR_LIMIT: f64 = (1_u64 << 22) as f64;
 
-/// Certificate: a parabola is negative if its Bernstein coefficients are below this share of the sum of moduli. Smaller
-/// values do not cover the rounding of its zeros (about 2^-50).
+/// Certificate: a parabola is negative if its Bernstein coefficients are below this share of the sum of its absolute
+/// coefficients. Smaller values do not cover the rounding of its zeros (about 2^-50).
 pub const PARABOLA_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Certificate: a parabola has no real zero if `b² < 4ac` times this factor.
 pub const PARABOLA_COMPLEX_FACTOR: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 
-/// Certificate: the minimum product of complex zeros (fraction of the step, squared) whose imaginary parts are
-/// provably above [`MIN_IMAGINARY_PART`]; with [`PARABOLA_COMPLEX_FACTOR`] they exceed 2^-10 times the square root of
-/// this.
+/// Certificate: the minimum product of complex zeros (fraction of the step, squared) whose imaginary parts are provably
+/// above [`MIN_IMAGINARY_PART`]; with [`PARABOLA_COMPLEX_FACTOR`] they exceed 2^-10 times the square root of this
+/// product.
 pub const PARABOLA_MIN_ZERO_PRODUCT: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: products of two coefficients, and sums of moduli, of at least this and less than
-/// [`PARABOLA_MAX_PRODUCT`] neither overflow nor underflow in the closed form of a parabola's zeros. With wider bounds
-/// they could.
+/// Certificate: the smallest product of two coefficients, and the smallest sum of absolute coefficients, for which the
+/// closed form of a parabola's zeros cannot underflow. With a smaller value it could.
 pub const PARABOLA_MIN_PRODUCT: f64 = 1e-200;
 
-/// Certificate: the upper bound for [`PARABOLA_MIN_PRODUCT`].
+/// Certificate: like [`PARABOLA_MIN_PRODUCT`], the limit below which the closed form cannot overflow.
 pub const PARABOLA_MAX_PRODUCT: f64 = 1e200;
 
 /// Certificate: like [`PARABOLA_NEAR_LIMIT`], for degrees three to five with separated zeros ([`DISCRIMINANT_MARGIN`]).
@@ -74,17 +74,18 @@ pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 /// zeros, which is measured, not proved.
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: searches among coefficients between this and [`SEARCH_MAX_COEFFICIENT`] (or zero) are known to end;
-/// among subnormal numbers some do not (root-finder.md 9.5). Parabolas without a real zero have a leading coefficient
-/// of this size.
+/// Certificate: the root finder's search is known to end if all coefficients are zero or between this value and
+/// [`SEARCH_MAX_COEFFICIENT`]; with subnormal coefficients, some searches do not end (root-finder.md 9.5). Parabolas
+/// without a real zero have a leading coefficient of this size.
 pub const SEARCH_MIN_COEFFICIENT: f64 = 1e-150;
 
-/// Certificate: the upper bound for [`SEARCH_MIN_COEFFICIENT`].
+/// Certificate: the upper end of the range that begins at [`SEARCH_MIN_COEFFICIENT`].
 pub const SEARCH_MAX_COEFFICIENT: f64 = 1e150;
 
-/// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene
-/// length unit) give no NaN and no infinity among coefficients, which are of degree six; with larger inputs, pairs are
-/// computed individually. With a much larger limit, the sign of a NaN would depend on the grouping of pairs.
+/// Detection in lanes: positions, displacements, radii, half-planes' points and normals with absolute values up to this
+/// limit (scene length unit) give no coefficient that is NaN or infinite, because coefficients are products of at most
+/// six inputs; with larger inputs, pairs are computed individually. With a much larger limit, the sign of a NaN would
+/// depend on the grouping of pairs.
 pub const LANES_MAX_INPUT: f64 = 1e48;
 
 /// Fair: a correct program may deviate by this many units of the running error bound (numerics.md 2; LAPACK's test
@@ -97,13 +98,13 @@ pub const FAIR_UNITS: f64 = 64.0;
 /// 1].
 pub const FAIR_NORM_UNITS: f64 = 16.0;
 
-/// Fair: coefficients that deviate by at most this part of [`FAIR_NORM_UNITS`] of their sum of moduli are clearly
-/// right. With larger values, less of a program's use of the tolerances is reported; with smaller ones, more bounds are
-/// computed.
+/// Fair: coefficients that deviate by at most this part of [`FAIR_NORM_UNITS`] of the sum of the absolute coefficients
+/// are clearly right. With larger values, less of a program's use of the tolerances is reported; with smaller ones,
+/// more bounds are computed.
 pub const FAIR_CLEAR_SHARE: f64 = 0.25;
 
 /// Fair: the tolerance of a root finder at the time of impact, in units of the polynomials' error bounds there. It
-/// covers deflation and other solvers than the course's.
+/// covers deflation, and solvers that are not the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
 /// Fair: a time of impact may deviate by this fraction of the step, for all polynomials, because even a careful root
@@ -140,7 +141,7 @@ pub const KNOWN_COEFFICIENT_ERROR: f64 = 1e-10;
 /// terms of a coefficient may cancel.
 pub const KNOWN_COEFFICIENT_FLOOR: f64 = 1e-12;
 
-/// Known mistakes: the maximum modulus of a coefficient that only one side has dropped (absolute; see
+/// Known mistakes: the maximum absolute value of a coefficient that only one side has dropped (absolute; see
 /// [`MIN_LEADING_COEFFICIENT`]).
 pub const KNOWN_DROPPED_COEFFICIENT: f64 = 2.0 * MIN_LEADING_COEFFICIENT;
 

@@ -109,7 +109,7 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
     })
 }
 
-/// Describes a program that was written for another milestone than the suite's.
+/// Describes a program that was written for a milestone that is not the suite's.
 fn describe_milestone(milestone: Assignment) -> String {
     format!("it looks like a program of {}, which is not the milestone of this suite", milestone.definition().title)
 }

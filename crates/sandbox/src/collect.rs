@@ -2,8 +2,8 @@
 //!
 //! A hostile program leaves a link to a reference, a pipe, a device or a terabyte of holes where its output should be.
 //! Therefore the file is opened below the folder, without following links and without waiting. The open file must be a
-//! regular file, must have only one name, and must not exceed the limit. Call this only after every process has ended,
-//! which is the case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
+//! regular file, must have only one hard link, and must not exceed the limit. Call this only after every process has
+//! ended, which is the case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
 
 use std::{
     fs::File,

@@ -1,6 +1,6 @@
 //! The grader's side of supervisors that serve several runs of one submission.
 //!
-//! With them, grading a right program on 116 scenes takes 1.2 s of processor time, compared with 2.0 s with one
+//! With them, grading a correct program on 116 scenes takes 1.2 s of processor time, compared with 2.0 s with one
 //! supervisor per run.
 
 use std::{

@@ -1,7 +1,7 @@
 //! Finds the grader's own files, which no submission may read or execute.
 //!
 //! The files contain the answers: the grader and its Python module compute the original's traces, and the sample is a
-//! right submission. Landlock can only allow files, not forbid them. Therefore, if a folder contains such a file, its
+//! correct submission. Landlock can only allow files, not forbid them. Therefore, if a folder contains such a file, its
 //! other entries are allowed one by one.
 
 use memchr::memmem::Finder;

@@ -20,13 +20,12 @@ pub struct SmallScene {
     pub is_minimal: bool,
 }
 
-/// A function that runs the program, and returns whether the program is wrong for the reason, and for no other one if
-/// that is requested. The result `None` ends the search.
+/// A function that runs the program, and returns whether the scene fails for the original reason, and only for that
+/// reason if this is requested. The result `None` ends the search.
 pub type RunProgram<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
-/// Makes a scene smaller. Begins with the first of these steps' scenes on which the program is wrong for the reason
-/// alone. If there is none, begins with the first on which it is wrong for the reason together with others. Returns
-/// `None` if there is no such scene.
+/// Makes a scene smaller. Begins with the first of these scenes that fails only for the original reason. If there is
+/// none, begins with the first that fails for the original reason and others. Returns `None` if there is no such scene.
 pub fn reduce(
     beginnings: &[(u32, Scene)],
     assignment: Assignment,
@@ -50,12 +49,12 @@ pub fn reduce(
 /// A running search, with the best scene so far.
 struct Search<'a, 'b> {
     assignment: Assignment,
-    /// Whether the program may be wrong for no other reason.
+    /// Whether scenes must fail only for the original reason.
     is_only_reason: bool,
     is_reproduced: &'a mut RunProgram<'b>,
     scene: Scene,
     size: Size,
-    /// The scenes on which the program is not wrong for the reason, as XML.
+    /// The scenes that do not fail for the original reason, as XML.
     refuted: BTreeSet<String>,
 }
 
@@ -78,8 +77,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason. Returns
-    /// whether there is one, or `None` if the search must end.
+    /// Takes the first of these scenes that is smaller and fails for the original reason. Returns whether there is one,
+    /// or `None` if the search must end.
     fn take_smaller(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
             let (size, xml) = (measure_size(&scene, self.assignment), scene::write(&scene));

@@ -10,7 +10,7 @@ use super::{
 /// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
-/// The number of rounds that no right program exceeds in any scene. Some mistakes change the list of zones forever.
+/// The number of rounds that no correct program exceeds in any scene. Some mistakes change the list of zones forever.
 const MAX_ROUNDS: u32 = 1000;
 
 /// The number of zones (or the number of particles, if larger) beyond which a step with a guard is stopped.

@@ -110,7 +110,7 @@ impl<'a> NearPairSearch<'a> {
         [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
-    /// Returns the boxes with which an edge is searched.
+    /// Returns the boxes with which the search finds an edge.
     fn edge_boxes(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;

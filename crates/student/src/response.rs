@@ -13,7 +13,7 @@ use super::{
 /// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Response];
 
-/// Returns twice `(1 + COR) / 2`.
+/// Returns the factor `1 + COR` of a correct program. The code takes it apart, because some mistakes change the half.
 pub fn restitution_factor(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(MODULE_AREAS) {
@@ -58,7 +58,7 @@ struct PairResponse<'a> {
     result: &'a mut State,
     /// The unit contact vector.
     u: Vec2,
-    /// The factor `(1 + COR) / 2`, doubled.
+    /// The factor `1 + COR` of a correct program.
     factor: f64,
 }
 

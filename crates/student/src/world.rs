@@ -31,7 +31,7 @@ pub struct StepLog<'a> {
     pub impulses: Vec<Contact>,
     /// The polynomials passed to the root finder, in order.
     pub polynomials: Vec<Polynomial>,
-    /// The guard that receives each polynomial as it is logged, with its index, before its roots are searched.
+    /// The guard that receives each polynomial as it is logged, with its index, before the search for its roots.
     pub guard: Option<StepGuard<'a>>,
     /// The number of steps of root searches beyond the usual number.
     pub long_searches: u64,

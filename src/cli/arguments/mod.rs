@@ -112,7 +112,7 @@ pub(super) enum CheckFormat {
     Text,
     /// One JSON object.
     Json,
-    /// A page for browsers: one file with pictures and a viewer of both motions.
+    /// A web page: one file with pictures and an animation of the expected and the actual motion.
     Html,
     /// Annotations for GitHub Actions.
     Github,
@@ -125,7 +125,7 @@ pub(super) enum ExplainFormat {
     Text,
     /// One JSON object.
     Json,
-    /// A page for browsers: one file with pictures and a viewer of both motions.
+    /// A web page: one file with pictures and an animation of the expected and the actual motion.
     Html,
 }
 

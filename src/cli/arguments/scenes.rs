@@ -45,7 +45,7 @@ Example:
   fosssim-oracle scene export --output scenes
   fosssim-oracle scene export 'HolisticTests/*' --output scenes
 
-A file with other contents is not replaced, but reported, unless --force is given.")]
+Existing files that differ are reported; --force overwrites them.")]
 pub(in crate::cli) struct SceneExportArguments {
     /// Write only scenes with these names, such as 'GeometricTests/*'. By default all are written.
     #[arg(value_name = "GLOB")]
@@ -53,7 +53,7 @@ pub(in crate::cli) struct SceneExportArguments {
     /// The folder, which is created if it does not exist.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: PathBuf,
-    /// Replace files with other contents.
+    /// Overwrite existing files whose contents differ.
     #[arg(long)]
     pub(in crate::cli) force: bool,
     /// Print only errors.

@@ -60,7 +60,7 @@ pub(super) fn doctor() -> Result<u8> {
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
     for id in mistake.split(',') {
-        // A variant is right, so a program that uses a variant would be a right submission.
+        // A variant is right, so a program that uses a variant would be a correct submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let mistakes = student::all_rows().filter(|row| row.kind != RowKind::Variant);
             let suggestion = suggestions::suggest(id, mistakes.map(|row| row.id));
@@ -119,7 +119,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         }
         Ok(exit::ACCEPTED)
     } else {
-        bail!("the demo did not end as it should: the right sample must be accepted, and the wrong one rejected")
+        bail!("the demo failed: the correct sample must be accepted, and the wrong one rejected")
     }
 }
 

@@ -121,7 +121,7 @@ fn require_complete<'a>(
         && let Some((other, grade)) = grades.find(|(_, grade)| !one.has_same_suite(grade))
     {
         bail!(
-            "{} grades {} by another suite than the others: grade this shard again",
+            "{} grades {} by a different suite from the others: grade this shard again",
             other.display(),
             grade.submission
         );

@@ -37,7 +37,7 @@ use std::{
     time::Duration,
 };
 
-/// The limits of processor time and wall time on scenes for which a right program needs some milliseconds.
+/// The limits of processor time and wall time on scenes for which a correct program needs some milliseconds.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
 /// The maximum number of runs that are killed at a limit. After that many, no further scenes are run.
@@ -116,7 +116,7 @@ impl ProgramUnderTest {
         }
     }
 
-    /// Returns the limits of the suite. Times are shortened, because a right program needs only some milliseconds for
+    /// Returns the limits of the suite. Times are shortened, because a correct program needs only some milliseconds for
     /// the scenes.
     pub(super) fn run_limits(&self) -> RunLimits {
         let limits = self.plan.limits;
@@ -322,7 +322,8 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     locate_failure(&scenes.collect::<Vec<_>>())
 }
 
-/// Returns the likely mistakes that explain all wrong traces together, and the keys of those that right traces refute.
+/// Returns the likely mistakes that explain all wrong traces together, and the keys of those that correct traces
+/// refute.
 fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
     let wrong: Vec<(&Scene, &[Explanation])> =

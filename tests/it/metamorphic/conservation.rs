@@ -11,7 +11,7 @@ use fosssim_oracle::{
 use proptest::prelude::*;
 use std::cell::Cell;
 
-/// Returns the sum of mass times vector, and the sum of the moduli, which determines the rounding errors.
+/// Returns the sum of mass times vector, and the sum of the absolute values, which determines the rounding errors.
 fn weighted(scene: &Scene, vector: impl Fn(usize) -> Vec2) -> (Vec2, f64) {
     let mut sum = (Vec2::zeros(), 0.0);
     for (index, particle) in scene.particles.iter().enumerate() {

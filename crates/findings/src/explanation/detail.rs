@@ -79,7 +79,7 @@ pub enum PolynomialDetail {
     StandsFor {
         /// The form of the formula that contains the letter.
         reading: Reading,
-        /// The letter instead of which another quantity is used.
+        /// The letter that is replaced by another quantity.
         letter: Cow<'static, str>,
         /// The quantity that is used by mistake.
         stand: Substitute,

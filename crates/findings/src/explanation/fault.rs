@@ -273,7 +273,7 @@ fosssim_num::closed_set! {
         /// The first round starts from the positions that the integrator predicted.
         Prediction =
             "the first zones are searched on the predicted positions, not on those after the impulse rounds",
-        /// The first round starts from other positions than those after the impulse rounds.
+        /// The first round does not start from the positions after the impulse rounds.
         First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
         /// The detection after the failsafe starts from the positions before the failsafe.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",

@@ -139,7 +139,7 @@ family!(HybridStep, 6, "a hybrid step" {
     penalty: Penalty,
     integrator: Integrator,
 } never never![
-    // If the impulses do not suffice, there is at least one round in which zones are searched.
+    // If the impulses do not suffice, there is at least one round that searches for zones.
     LoopEnd::Nothing with ZoneCount::{One, Several},
     LoopEnd::Within with ZoneCount::{One, Several},
     LoopEnd::JustEnough with ZoneCount::{One, Several},

@@ -24,7 +24,7 @@ use fosssim_mistakes::{
 };
 use fosssim_model::assignments::Assignment;
 
-/// The maximum number of causes of a submission for which a smallest scene is searched.
+/// The maximum number of causes of a submission for which a smallest scene is searched for.
 const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {

@@ -54,8 +54,8 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
 /// The comparison of two coefficient lists of equal length, without bounds.
 ///
 /// The factor is that of the sums of absolute values. Bounds are at least as large as the values, so a deviation below
-/// [`FAIR_NORM_UNITS`] of the sum of moduli is right. Nearly all right coefficients deviate much less, and are called
-/// right by a wide margin.
+/// [`FAIR_NORM_UNITS`] of the sum of the absolute coefficients is right. Nearly all right coefficients deviate much
+/// less, and are called right by a wide margin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' absolute values.

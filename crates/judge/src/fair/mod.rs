@@ -4,7 +4,7 @@
 //! It judges one step as follows:
 //!
 //! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
-//!    searches the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric
+//!    finds the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric
 //!    part at its mid record. A mistake is therefore counted once, at the stage where it is made. If the time of impact
 //!    of its polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead
 //!    the root finder to a decision that differs from the reference's, both decisions are accepted.

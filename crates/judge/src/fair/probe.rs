@@ -190,8 +190,9 @@ impl StepController for PerturbedRun<'_> {
         self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }
 
-    /// Changes a matrix by rounding errors of its largest entries, wherever it has an entry. A solver's solution is
-    /// exact for such a matrix, so the matrix's condition determines the effect (Wilkinson, J. ACM 8(3), 1961).
+    /// Adds a rounding error of a typical entry to each nonzero entry of the matrix. A computed solution is the exact
+    /// one of a matrix perturbed like this, so the condition number determines the effect (Wilkinson, J. ACM 8(3),
+    /// 1961).
     fn observe_system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();

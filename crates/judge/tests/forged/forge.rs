@@ -1,4 +1,4 @@
-//! Right traces with random errors, programs whose polynomials have factors, and the results that the fair rules may
+//! Correct traces with random errors, programs whose polynomials have factors, and the results that the fair rules may
 //! give for both.
 use fosssim_judge::{
     Finding, FindingKind,
@@ -58,7 +58,7 @@ struct Known {
     expected: ExpectedPolynomials,
 }
 
-/// A scene, its right trace, and the right values of its polynomials.
+/// A scene, its correct trace, and the right values of its polynomials.
 pub struct Stage {
     name: String,
     scene: Scene,
@@ -121,7 +121,7 @@ impl Stage {
         Layout::for_scene(&self.scene).records_per_step() as usize
     }
 
-    /// Returns the right trace with other polynomials, the same in both records of a step.
+    /// Returns the correct trace with other polynomials, the same in both records of a step.
     fn relogged(&self, change: impl Fn(usize, usize, &[f64]) -> Option<Vec<f64>>) -> Vec<u8> {
         let mut writer = Writer::new(Vec::new(), Layout::for_scene(&self.scene));
         for (number, frame) in self.frames.iter().enumerate() {
@@ -174,7 +174,7 @@ fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
     Some(frames)
 }
 
-/// The factors of a right trace's polynomials.
+/// The factors of a correct trace's polynomials.
 #[derive(Debug, Clone, Copy)]
 enum Base {
     One,
@@ -338,7 +338,7 @@ fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     of_form(known.expected.polynomial(known.number)) || known.expected.other_form(known.number).is_some_and(of_form)
 }
 
-/// Makes a right trace wrong. Returns the result of the fair rules if it is not allowed.
+/// Makes a correct trace wrong. Returns the result of the fair rules if it is not allowed.
 pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let base = Base::draw(random);
     let (target, change) = (Target::draw(stage, random), Change::draw(random));
@@ -399,7 +399,7 @@ enum Factors {
     Each(f64),
     /// Each pair has another factor, between this and its reciprocal.
     Pair(f64),
-    /// Each polynomial is divided by its size, or by the modulus of its leading coefficient.
+    /// Each polynomial is divided by its size, or by the absolute value of its leading coefficient.
     Size,
     Leading,
 }

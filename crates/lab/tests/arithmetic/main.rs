@@ -1,6 +1,6 @@
-//! Right programs with other arithmetic, on scenes whose traces contain states: the fair rules accept them with a large
-//! margin, and reject noise. `--nocapture` prints the shares of the tolerances that they use. With `FOSSSIM_CORPUS`,
-//! the course's own scenes are tried as well.
+//! Correct programs with other arithmetic, on scenes whose traces contain states: the fair rules accept them with a
+//! large margin, and reject noise. `--nocapture` prints the shares of the tolerances that they use. With
+//! `FOSSSIM_CORPUS`, the course's own scenes are tried as well.
 #![forbid(unsafe_code)]
 
 mod right;
@@ -21,10 +21,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The sizes of noise that is added to numbers of right traces.
+/// The sizes of noise that is added to numbers of correct traces.
 const NOISE_SIZES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
 
-/// The number of right traces of each scene to which noise is added.
+/// The number of correct traces of each scene to which noise is added.
 const NOISY_TRACES_PER_SCENE: u64 = 8;
 
 /// The results on the scenes of one milestone.
@@ -44,7 +44,7 @@ struct MilestoneTally {
     refused: [u64; NOISE_SIZES.len()],
 }
 
-/// The factor by which the differences of a right program from the reference may grow in every step.
+/// The factor by which the differences of a correct program from the reference may grow in every step.
 const MIN_ROOM: u32 = 32;
 
 /// The place in [`NOISE_SIZES`] from which all noise is rejected.
@@ -74,12 +74,10 @@ fn right_programs_have_room_and_noise_is_rejected() {
 
 /// Prints the table of docs/rules/states.md.
 fn print(rows: &BTreeMap<String, MilestoneTally>) {
-    println!(
-        "milestone  scenes  right programs  accepted  borderline  rejected if times  largest share: position  velocity"
-    );
+    println!("milestone  scenes  programs  accepted  borderline  rejected if times  largest share: position  velocity");
     for (milestone, row) in rows {
         println!(
-            "{milestone:9}  {:6}  {:14}  {:8}  {:10}  {:>18}  {:23.1} %  {:6.1} %",
+            "{milestone:9}  {:6}  {:8}  {:8}  {:10}  {:>18}  {:23.1} %  {:6.1} %",
             row.scenes,
             row.programs,
             row.accepted,
@@ -109,7 +107,7 @@ impl MilestoneTally {
     }
 }
 
-/// Returns the milestone, its results on a scene, and the rejected right programs.
+/// Returns the milestone, its results on a scene, and the rejected correct programs.
 fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>) {
     let mut tally = MilestoneTally { scenes: 1, ..MilestoneTally::default() };
     let mut faults = Vec::new();
@@ -139,7 +137,7 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
     (milestone, tally, faults)
 }
 
-/// Judges single steps of a right program with enlarged differences from the reference.
+/// Judges single steps of a correct program with enlarged differences from the reference.
 struct SingleSteps<'a> {
     scene: &'a Scene,
     /// The scene with a single step.

@@ -15,11 +15,10 @@ pub struct CorrectedTrace {
     pub agreed_count: usize,
 }
 
-/// Corrects a trace's own explanations with those of all traces together
-/// ([`explain_together`](super::explain_together)). If one of the common explanations applies to the trace, they
-/// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
-/// without those that are `refuted`. If nothing explains some polynomials in all traces, its own suggestion about them
-/// is replaced, because the other traces contradict it.
+/// Replaces a trace's explanations by those of all traces together ([`explain_together`](super::explain_together)), if
+/// one of these applies to the trace. The counts and the example of the trace are kept. If none applies, the
+/// explanations that are `refuted` are removed. If no explanation covers a polynomial in every trace, the trace's guess
+/// about it is replaced, because other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
     let of_all = likely
@@ -38,8 +37,8 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     CorrectedTrace { agreed_count: explanations.len(), explanations }
 }
 
-/// Returns the explanations of a trace. Those of polynomials that nothing explains in all traces become one, which says
-/// so.
+/// Returns the explanations of a trace. If no explanation covers a polynomial in every trace, the trace's guesses about
+/// such polynomials are replaced by one explanation, which says so.
 fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Explanation> {
     let unexplained = likely.iter().find_map(|explanation| match &explanation.topic {
         ExplanationTopic::Polynomials { subjects, found: PolynomialEvidence::Nothing } => Some(subjects),
@@ -68,8 +67,8 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
     Some(explain_by_row(one, row, same_as.collect()))
 }
 
-/// Returns an explanation from all traces together, as this trace shows it. The list is empty if the trace's own
-/// explanations do not name it.
+/// Returns an explanation from all traces together, with the counts and the example of this trace. The list is empty if
+/// no explanation of this trace names the same mistake.
 fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // A trace may show several of the mistakes.

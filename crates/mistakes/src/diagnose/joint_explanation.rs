@@ -21,9 +21,9 @@ const MAX_MISTAKES: usize = 3;
 const MANY_TRACES: usize = 8;
 
 /// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
-/// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
-/// contradict. The explanation of the first value that is not finite does not count toward this limit. It comes last,
-/// because such values follow from the other mistakes.
+/// still empty, which count as one and come first. `refuted` are keys of mistakes that correct traces of the same
+/// program contradict. The explanation of the first value that is not finite does not count toward this limit. It comes
+/// last, because such values follow from the other mistakes.
 ///
 /// A single scene often cannot distinguish mistakes. Several scenes together nearly always distinguish them.
 pub fn explain_together<'a>(

@@ -64,8 +64,8 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     all
 }
 
-/// Returns whether a guess from the polynomials of a single kind has another key than this known mistake, but means the
-/// same: `radii-squared-apart` of particles and edges is `pe-radii-squared-apart`.
+/// Returns whether a guess about a single kind of polynomial means the same as a known mistake with a longer key. For
+/// example, the guess `radii-squared-apart` about particles and edges means `pe-radii-squared-apart`.
 pub(super) fn has_same_meaning(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
     let ExplanationTopic::Polynomials { subjects, .. } = &one.topic else { return false };

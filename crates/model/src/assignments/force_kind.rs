@@ -6,11 +6,11 @@ fosssim_num::closed_set! {
     pub enum ForceKind {
         /// A spring along an edge, with damping.
         Spring,
-        /// One acceleration for every particle.
+        /// The same acceleration for every particle.
         SimpleGravity,
         /// The attraction of two particles by their masses.
         Gravitation,
-        /// One force on every particle.
+        /// The same constant force on every particle.
         Constant,
         /// Drag against each particle's velocity.
         Drag,

@@ -198,7 +198,7 @@ pub enum ImpulseList {
     Responses,
 }
 
-/// The coefficients that are dropped from a polynomial before its zeros are searched, and when a trace is read.
+/// The coefficients that are dropped from a polynomial before the search for its zeros, and when a trace is read.
 ///
 /// Code that depends on a rule is marked ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

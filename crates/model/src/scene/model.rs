@@ -114,14 +114,14 @@ impl Collision {
     }
 }
 
-/// The method with which a penalty force finds its pairs (`collisiondetection`), which determines the order of their
-/// sum (simulation.md 3). Other collision handling always checks all pairs.
+/// The method with which a penalty force finds its pairs (`collisiondetection`), and therefore the order in which the
+/// forces of the pairs are added (simulation.md 3). Other collision handling always checks all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionDetection {
-    /// All pairs are summed in the order of a detection pass (`all-pairs`, the default).
+    /// The forces of all pairs are added in the order of a detection pass (`all-pairs`, the default).
     #[default]
     AllPairs,
-    /// Nearby pairs are summed in the order of a sweep along x (`contest`, Theme 2, Milestone 3).
+    /// The forces of nearby pairs are added in the order of a sweep along x (`contest`, Theme 2, Milestone 3).
     Contest,
 }
 

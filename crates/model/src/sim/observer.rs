@@ -300,7 +300,7 @@ impl Decision {
         matches!(self, Self::Hit { .. })
     }
 
-    /// Returns the time of impact. It is infinite if there is none or if none was searched.
+    /// Returns the time of impact. It is infinite if there is none, or if there was no search for it.
     pub const fn time(self) -> f64 {
         match self {
             Self::Hit { time, .. } | Self::Miss { time: ImpactTime::Found(time) } => time,
@@ -312,7 +312,7 @@ impl Decision {
 /// The information about the time of a pair that does not collide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ImpactTime {
-    /// The time was not searched, because a certificate proves that it is not within the step.
+    /// The search for the time was skipped, because a certificate proves that it is not within the step.
     Excluded,
     /// The search found this time (greater than 1 or infinite, or at most 1 with a zero normal).
     Found(f64),

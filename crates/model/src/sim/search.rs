@@ -18,7 +18,7 @@ pub enum RootSearch {
 pub struct SearchCounts {
     /// The number of detection calls.
     pub calls: u64,
-    /// The number of calls whose roots were searched.
+    /// The number of calls with a root search.
     pub searched: u64,
     /// The number of calls excluded by a certificate.
     pub excluded: u64,

@@ -26,7 +26,7 @@ pub enum StepError {
         step: u32,
     },
     /// The step needs more work than allowed ([`Simulation::limit_work`](super::Simulation::limit_work)).
-    #[error("step {step}: collision handling exceeds its limit of work; a run of the scene needs far less")]
+    #[error("step {step}: collision handling needs more work than allowed; a normal run of the scene needs far less")]
     Work {
         /// The step, from 1.
         step: u32,

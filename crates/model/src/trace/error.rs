@@ -81,7 +81,10 @@ pub enum Malformation {
         expected: u64,
     },
     /// The bytes end inside positions and velocities.
-    #[error("positions and velocities need {needs} bytes, but {left} are left; the trace is cut or of another scene")]
+    #[error(
+        "positions and velocities need {needs} bytes, but {left} are left; the trace is cut short or belongs to \
+         another scene"
+    )]
     State {
         /// The number of bytes needed: 32 per particle.
         needs: u64,
@@ -97,7 +100,7 @@ pub enum Malformation {
         left: u64,
     },
     /// A count is negative.
-    #[error("the {list} list has the negative count {count}; the trace is damaged or of another scene")]
+    #[error("the {list} list has the negative count {count}; the trace is damaged or belongs to another scene")]
     NegativeCount {
         /// The list concerned.
         list: RecordList,
@@ -106,8 +109,8 @@ pub enum Malformation {
     },
     /// A count is too large for the rest of the trace.
     #[error(
-        "the {list} list declares {count} entries, at least {needs} bytes, but {left} are left; the trace is cut or of \
-         another scene"
+        "the {list} list declares {count} entries, at least {needs} bytes, but {left} are left; the trace is cut \
+         short or belongs to another scene"
     )]
     CountBeyondEnd {
         /// The list concerned.
@@ -180,7 +183,7 @@ pub enum Malformation {
     /// A record does not fit into the memory for one record.
     #[error(
         "the record needs more than {limit} bytes of memory, which is this program's limit for a record; the trace \
-            is damaged or of another scene"
+            is damaged or belongs to another scene"
     )]
     FrameTooLarge {
         /// The limit in bytes.
@@ -188,8 +191,8 @@ pub enum Malformation {
     },
     /// More bytes follow the last record than are read.
     #[error(
-        "more than {limit} bytes follow the last record; they were not all read; the trace is of another scene or \
-         never ends"
+        "more than {limit} bytes follow the last record; they were not all read; the trace belongs to another \
+         scene or never ends"
     )]
     Endless {
         /// The limit in bytes.
@@ -237,7 +240,7 @@ mod tests {
         assert_eq!(
             error.to_string(),
             "byte 72, record 4 (step 2): the impulse list declares 7 entries, at least 252 bytes, but 40 are left; the \
-             trace is cut or of another scene"
+             trace is cut short or belongs to another scene"
         );
         let what = Malformation::SizeBeyondEnd { polynomial: 3, size: i32::MAX, left: 0 };
         let error = TraceError { offset: 0, frame: 0, step: 0, what };

@@ -1,4 +1,5 @@
-//! Certificates for polynomials of degree three to five that the root finder finds nowhere positive in `[0, 1]`.
+//! Decides for polynomials of degree three to five whether the root finder's positive set in `[0, 1]` is certainly
+//! empty.
 //!
 //! On an interval a polynomial lies between its smallest and its largest Bernstein coefficient (for instance Farouki,
 //! *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). If all of them are negative with a

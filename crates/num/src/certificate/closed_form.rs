@@ -1,4 +1,4 @@
-//! Certificates for constants, lines and parabolas that the root finder finds nowhere positive in `[0, 1]`.
+//! Proves for polynomials of degree at most two that the root finder's positive set in `[0, 1]` is empty.
 //!
 //! In the comments, u is 2^-53 and every claim is about the *computed* positive set.
 use super::{
@@ -78,10 +78,10 @@ fn has_no_real_zero(a: f64, b: f64, c: f64) -> bool {
 
 /// Returns whether the parabola is below zero on `[0, 1]` with a margin, and its zeros are near.
 ///
-/// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the moduli, far
-/// less than the margin, so none is in `[0, 1]`. Their modulus is at most r = 2^23, so the rounding error of a value is
-/// at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have a modulus of at least |a|, and the one
-/// between two zeros on either side of `[0, 1]` at least |a|/4.
+/// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the absolute
+/// coefficients, far less than the margin, so none is in `[0, 1]`. Their absolute value is at most r = 2^23, so the
+/// rounding error of a value is at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have an absolute
+/// value of at least |a|, and the one between two zeros on either side of `[0, 1]` at least |a|/4.
 #[inline]
 fn is_negative_on_unit(a: f64, b: f64, c: f64) -> bool {
     let size = a.abs() + b.abs() + c.abs();

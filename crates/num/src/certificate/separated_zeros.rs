@@ -36,8 +36,8 @@ impl<const LENGTH: usize> PerturbedCoefficients<LENGTH> {
     }
 }
 
-/// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes
-/// two zeros coincide. An intermediate remainder of an unusually low degree gives `false`, too.
+/// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their absolute
+/// values makes two zeros coincide. An intermediate remainder of an unusually low degree gives `false`, too.
 #[inline]
 pub(super) fn are_zeros_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
     let mut dividend = PerturbedCoefficients { values: *coefficients, changes: coefficients.map(f64::abs) };

@@ -19,11 +19,11 @@ pub(crate) enum IntervalEnd {
 /// row.
 const UNDERFLOW_BOUND: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
-/// The bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
+/// The bound on the error of the Bernstein coefficients, in units of the sum of the absolute power coefficients.
 const CONVERSION_BOUND: f64 = 16.0 * UNIT_ROUNDOFF;
 
 /// The number of roundings up to a Bernstein coefficient: of a weight, of a product, of all sums except the first, and
-/// of the sum of moduli. The proof allows for twice as many.
+/// of the sum of the absolute coefficients. The proof allows for twice as many.
 const ROUNDING_COUNT: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
 const _: () = assert!(CONVERSION_BOUND >= 2.0 * ROUNDING_COUNT as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 

@@ -3,8 +3,8 @@
 //! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two
 //! and the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
 
-/// Returns whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros
-/// fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
+/// Returns whether all values are integer multiples of one power of two with quotients whose absolute values are below
+/// `2^bits`. Zeros fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
 pub fn are_short(values: &[f64], bits: u32) -> bool {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
     for &value in values {

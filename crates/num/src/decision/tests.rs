@@ -15,7 +15,7 @@ type Lists = Vec<Vec<f64>>;
 /// Polynomials; and if `tau` is at most 1, its value and whether they only touch.
 type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 
-/// Returns the decision for coefficients whose terms add up to their modulus: bound = |value|.
+/// Returns the decision for coefficients whose terms add up to their absolute value: bound = |value|.
 fn decided(lists: &[Vec<f64>], units: f64) -> CertifiedDecision {
     let bounded: Vec<Vec<BoundedValue>> =
         lists.iter().map(|list| list.iter().map(|&value| BoundedValue::from_rounded(value)).collect()).collect();

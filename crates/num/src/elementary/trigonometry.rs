@@ -53,7 +53,7 @@ pub fn cos(angle: f64) -> f64 {
     }
 }
 
-/// Returns the upper half of the bits of an angle's modulus, which has the order of the angles.
+/// Returns the upper half of the bits of an angle's absolute value, which has the order of the angles.
 fn high_word(angle: f64) -> u32 {
     (angle.abs().to_bits() >> 32) as u32
 }

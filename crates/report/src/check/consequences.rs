@@ -41,5 +41,5 @@ pub(crate) fn count_consequences(outcome: &Outcome) -> u64 {
 
 /// Describes how many polynomials are wrong only because positions are wrong.
 pub(super) fn describe_consequences(follow: u64) -> String {
-    format!("polynomials that follow from wrong positions: {}", number(follow))
+    format!("polynomials that are wrong only because of wrong positions: {}", number(follow))
 }

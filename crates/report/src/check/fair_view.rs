@@ -60,7 +60,7 @@ impl CountedView {
     }
 }
 
-/// Decisions that round-off may turn around.
+/// Decisions that round-off may change.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct BorderlineView<'a> {

@@ -1,4 +1,4 @@
-//! Recognizes files that are something else than a trace.
+//! Recognizes files that are not traces.
 
 /// The number of bytes at the start of a file that are read to recognize its kind.
 pub const SNIFFED_BYTES: u64 = 512;

@@ -23,7 +23,7 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(TextStyle::Strong, "Class"), render_head(grades));
     let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scenes with the fewest right answers"));
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scenes with the fewest correct answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
         for (scene, share) in scenes.iter().take(max_rows) {
             let percent = 100.0 * share.accepted as f64 / share.run.max(1) as f64;
@@ -38,7 +38,7 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
             let _ = writeln!(text, "  and {}", format_count((scenes.len() - max_rows) as u64, "more scene"));
         }
         if whole > 0 {
-            let _ = writeln!(text, "  {} accepted for all", format_count(whole as u64, "scene"));
+            let _ = writeln!(text, "  {} accepted for all submissions", format_count(whole as u64, "scene"));
         }
     }
     let mistakes = find_frequent(grades);
@@ -53,7 +53,7 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
     }
     let same = group_same_programs(grades);
     if !same.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "The same program, byte for byte"));
+        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Identical programs"));
         for members in &same {
             let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
             let _ = writeln!(text, "  {}", list_first(&names, max_rows));
@@ -217,7 +217,7 @@ mod tests {
             ..samples::accepted_grade()
         };
         let grades = [with("zoe", "1", &["kim"]), with("ann", "2", &[]), with("kim", "1", &["zoe"])];
-        assert!(render_class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
+        assert!(render_class(&grades, 3, Style::Plain).ends_with("Identical programs\n  zoe, kim\n"));
         let shown = |reader| {
             let visible: Vec<Grade> =
                 grades.iter().map(|grade| Format::Json.visible_part(grade, reader, false).into_owned()).collect();

@@ -108,7 +108,7 @@ fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
         let first = html.split_once("First difference").expect("it is told").1;
         let first = first.split_once("</section>").expect("a card").0;
         assert!(first.contains("where particle") && first.contains("<mark>"), "{first}");
-        assert!(html.contains("Polynomials that follow from wrong positions"), "{id}");
+        assert!(html.contains("Polynomials that are wrong only because of wrong positions"), "{id}");
         assert!(!html.contains("The detection calls that are wrong"), "{id}");
         let told = text_of(&scene, &trace);
         let first = told.split_once("First difference").expect("it is told").1.lines().nth(1).expect("a line");

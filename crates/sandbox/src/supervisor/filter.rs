@@ -212,7 +212,7 @@ fn denial_rules(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     Ok(refusals)
 }
 
-/// Returns the denials of calls that name another process than the caller. Each has the error number, the call, and the
+/// Returns the denials of calls that name a process other than the caller. Each has the error number, the call, and the
 /// rules.
 fn denials_for_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);

@@ -73,8 +73,8 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
     contents
 }
 
-/// Changes the owner and the group of the folder and its contents. Files with a second name are left out, because that
-/// name may be elsewhere. This must be called only when no process of the program is alive.
+/// Changes the owner and the group of the folder and its contents. Files with several hard links are skipped, because
+/// another link may be outside the folder. This must be called only when no process of the program is alive.
 pub(super) fn change_owner(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();

@@ -503,7 +503,7 @@ impl Run {
         self.order.allows_tools || self.order.sanitizers || !self.order.layers.landlock || !self.order.layers.seccomp
     }
 
-    /// Returns whether there may be other processes than the main one. Without the filter, every program can start
+    /// Returns whether there may be processes besides the main one. Without the filter, every program can start
     /// processes.
     fn has_children(&self) -> bool {
         self.order.allows_tools || !self.order.layers.seccomp

@@ -1,4 +1,4 @@
-//! Correct programs that compute in other coordinates than the scene's, which changes no event.
+//! Correct programs that compute in coordinates that are not the scene's, which changes no event.
 use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};

@@ -1,7 +1,7 @@
-//! Right programs of the milestones whose traces hold states, in other arithmetic than the reference's.
+//! Correct programs of the milestones whose traces hold states, in arithmetic that differs from the reference's.
 //!
 //! The programs compute the same results with the formulas of a textbook, in another order and with nalgebra's solvers.
-//! The fair rules must accept all of them, so they measure how much of the tolerances a right program uses.
+//! The fair rules must accept all of them, so they measure how much of the tolerances a correct program uses.
 mod forces;
 mod integrators;
 mod simple;

@@ -11,7 +11,7 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, Term, all_rows};
 const MAX_DISTANT_PAIRS: usize = 5_000;
 
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
-/// student of the scene's assignment. Missing records and nearby pairs are searched separately
+/// student of the scene's assignment. Missing records and faults of nearby pairs are found separately
 /// ([`near_pairs`](super::super::near_pairs)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_elsewhere =
@@ -84,7 +84,7 @@ mod tests {
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
     use fosssim_student::{Student, assignments::probe_scenes, record_trace};
 
-    /// A mistake that is not tried on a scene would not change the right trace of the scene.
+    /// A mistake that is not tried on a scene would not change the correct trace of the scene.
     #[test]
     fn inapplicable_mistakes_do_not_change_the_trace() {
         let mut left_out = 0;

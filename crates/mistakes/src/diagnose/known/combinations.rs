@@ -18,7 +18,7 @@ const MAX_WORK: u64 = 700_000;
 pub(super) struct RowCombination {
     /// The rows: first the empty stages, then the others in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
-    /// The rows that are as good as each row of the combination.
+    /// For each row of the combination, the rows that explain as much.
     pub(super) equivalent_rows: Vec<Vec<&'static Row>>,
     /// Other rows that explain the trace without any empty stage.
     pub(super) rival_rows: Vec<&'static Row>,
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
 
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
-        // The rows that were as good as each row of the set when it was added.
+        // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.reproduced_share(&set);
         while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {

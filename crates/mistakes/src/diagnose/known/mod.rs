@@ -52,8 +52,8 @@ pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_kept_steps(&mut reference, scene, scan).explanations
 }
 
-/// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. This
-/// needs much less work than [`find_known`].
+/// Returns whether a correct program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace.
+/// This needs much less work than [`find_known`].
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
     let rows: Vec<&'static Row> = keys.iter().filter_map(|key| find(key)).collect();

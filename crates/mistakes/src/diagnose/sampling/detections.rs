@@ -115,7 +115,8 @@ struct SampleCollector<'a> {
 }
 
 impl SampleCollector<'_> {
-    /// Returns whether the submission lists a contact of the pair. Other collisions than `continuous-time` list none.
+    /// Returns whether the submission lists a contact of the pair. Collision types other than `continuous-time` list
+    /// none.
     fn is_hit(&self, pair: Pair) -> bool {
         matches!(self.scene.collision, Collision::ContinuousTime { .. })
             && self.mid.impulses.iter().any(|impulse| impulse.pair() == Some(pair))

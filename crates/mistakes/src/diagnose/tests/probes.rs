@@ -28,7 +28,7 @@ fn both_readers_give_the_scenes_back() {
 /// The values of the detections of a kind.
 #[derive(Default)]
 struct Seen {
-    /// The greatest modulus of each coefficient, by kind and polynomial, from the lowest power.
+    /// The largest absolute value of each coefficient, by kind and polynomial, from the lowest power.
     greatest: PairKindMap<[[f64; 6]; PairKind::MAX_POLYNOMIALS]>,
     /// The number of hits per kind.
     hits: PairKindMap<usize>,

@@ -108,7 +108,7 @@ impl<'a> LoggedRows<'a> {
 /// only the bytes of the remaining ones count.
 #[inline(always)]
 fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
-    // The number of consecutive small coefficients, at most all of them.
+    // The number of leading small coefficients; `LENGTH` if all are small.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
     let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };

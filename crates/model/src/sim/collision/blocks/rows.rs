@@ -27,7 +27,7 @@ pub(super) struct HitSearch<'a> {
     pub bytes: Option<&'a mut PolynomialBytes>,
 }
 
-/// Memory for the rows of a block of particles.
+/// A buffer with one row of polynomial coefficients for each pair of a block.
 type Rows = [f64; SHORT_ROW_LENGTH * MAX_LANES];
 
 impl LaneWork for HitSearch<'_> {

@@ -43,8 +43,7 @@ impl BodyExtent {
         self.low[0] > other.high[0]
     }
 
-    /// Returns whether boxes overlap or touch on all axes; x is tested last, because the search has found them near on
-    /// x.
+    /// Returns whether boxes overlap or touch on all axes; x is tested last, because the sweep has already compared x.
     pub fn overlaps(&self, other: &Self) -> bool {
         [1, 2, 3, 0]
             .into_iter()

@@ -3,7 +3,7 @@
 //! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is then NaN,
 //! and enters the gradient if the distance test is passed. Only the contest's detection has a guard.
 //!
-//! Each detection sums the pairs in a specific order ([`PenaltyPairs`]).
+//! Each detection adds the forces of the pairs in a specific order ([`PenaltyPairs`]).
 mod extent;
 mod introsort;
 mod pairs;

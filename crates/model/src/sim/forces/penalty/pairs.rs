@@ -1,8 +1,8 @@
-//! The pairs that a penalty force sums, and their order.
+//! The pairs whose penalty forces are added, and their order.
 //!
 //! The default is the order of a detection pass (collisions.md 1). In the contest (Theme 2, Milestone 3) the original
-//! searches for nearby pairs ([`Sweep`]), and sums pairs of particles, then particles with edges, then particles with
-//! half-planes.
+//! searches for nearby pairs ([`Sweep`]), and adds the forces of pairs of particles, then those of particles with
+//! edges, then those of particles with half-planes.
 use super::sweep::{Sweep, SweepOrder};
 use crate::{
     scene::{CollisionDetection, Scene},
@@ -52,7 +52,7 @@ impl PenaltyPairs {
     }
 
     /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
-    /// order in which they are summed. In large scenes few other pairs are included.
+    /// order in which their forces are added. In large scenes few other pairs are included.
     pub fn visit_pairs(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;

@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
-/// The terms of a scene's penalty force, which a step sums.
+/// The terms of a scene's penalty force, which a step adds.
 #[derive(Debug, Clone)]
 pub struct PenaltyTerms {
     bodies: Bodies,
