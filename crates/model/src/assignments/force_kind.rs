@@ -6,11 +6,11 @@ fosssim_num::closed_set! {
     pub enum ForceKind {
         /// A spring along an edge, with damping.
         Spring,
-        /// The same acceleration for every particle.
+        /// A uniform acceleration, the same for every particle.
         SimpleGravity,
         /// The attraction of two particles by their masses.
         Gravitation,
-        /// The same constant force on every particle.
+        /// A constant force, the same on every particle.
         Constant,
         /// Drag against each particle's velocity.
         Drag,
