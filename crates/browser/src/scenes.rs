@@ -31,7 +31,7 @@ pub(crate) fn list_scenes() -> Value {
     Assignment::list_default_first().into_iter().map(list_groups).collect()
 }
 
-/// Returns the name of an embedded suite, such as `t2m2@2`, and its title.
+/// Returns the name of an embedded suite, such as `t2m2@3`, and its title.
 pub(crate) fn describe_suite(name: &str) -> Value {
     let assignment = Assignment::from_key(name.split('@').next().unwrap_or_default()).unwrap_or(Assignment::DEFAULT);
     json!({ "name": name, "title": format!("{} ({name})", assignment.definition().title) })

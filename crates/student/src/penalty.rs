@@ -123,19 +123,18 @@ impl PenaltySum<'_> {
         self.add_push(term, (1, j), length(n), k * depth * u);
     }
 
-    fn particle_edge(&mut self, (i, edge): (usize, usize)) {
+    fn particle_edge(&mut self, (i, index): (usize, usize)) {
         let term = Term::PenaltyEdges;
         let world = self.world;
         let makes = |slip: Slip| world.student.makes_slip(term, slip);
-        let edge = world.scene.edges[edge];
+        let edge = world.scene.edges[index];
         let (x1, x2, x3) = (vector_at(self.x, i), vector_at(self.x, edge.first), vector_at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
         // A NaN is kept here, unlike in the responses.
         let alpha = closest_alpha(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
         let n = x2 + alpha * (x3 - x2) - x1;
-        let particles = &world.scene.particles;
-        let radius = if makes(Slip::EndRadius) { particles[edge.first].radius } else { edge.radius };
-        let Some([k, depth]) = self.overlap_depth(term, length(n), [particles[i].radius, radius]) else { return };
+        let radii = [world.scene.particles[i].radius, world.edge_radius(term, index)];
+        let Some([k, depth]) = self.overlap_depth(term, length(n), radii) else { return };
         let u = unit(n);
         let [first, second] = match () {
             () if makes(Slip::SharesExchanged) => [alpha, 1.0 - alpha],

@@ -81,6 +81,7 @@ impl SimplePass<'_> {
             () if self.makes(term, Slip::Missing) => true,
             () if self.makes(term, Slip::Sign) => small > large,
             () if self.makes(term, Slip::NotStrict) => small <= large,
+            () if self.makes(term, Slip::Margin) => small + 0.01 < large,
             () => small < large,
         };
         !self.makes(kind.detection, Slip::Missing)
@@ -178,14 +179,14 @@ impl SimplePass<'_> {
         let seen = match () {
             () if self.makes(kind.approach, Slip::Middle) => 0.5,
             () if self.makes(kind.approach, Slip::Mirrored) => 1.0 - alpha,
+            () if self.makes(kind.approach, Slip::Unclamped) => on_line,
             () => alpha,
         };
         let [of_particle, of_first] = self.tested_velocities(kind, [v1, v2]);
         let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
-        let particles = &self.world.scene.particles;
-        let radius = if self.makes(kind.overlap, Slip::EndRadius) { particles[two].radius } else { edge.radius };
+        let radii = [self.world.scene.particles[one].radius, self.world.edge_radius(kind.overlap, index)];
         let is_off = self.makes(Term::ClosestPoint, Slip::EndsOut) && !(0.0..=1.0).contains(&on_line);
-        if is_off || !self.is_colliding(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
+        if is_off || !self.is_colliding(kind, n, radii, of_particle - of_first - turning) {
             return None;
         }
         let n = self.contact_vector(kind, n);

@@ -8,7 +8,7 @@ use fosssim_num::{
 use std::sync::Arc;
 
 use super::{
-    Mistake,
+    Mistake, Slip, Term,
     author::Student,
     objects::{Contact, Object, Pair, State},
 };
@@ -93,6 +93,16 @@ impl World {
     /// Returns whether the particle is fixed.
     pub fn is_fixed(&self, particle: usize) -> bool {
         self.scene.particles[particle].fixed
+    }
+
+    /// Returns the radius that the program uses for an edge in a quantity.
+    pub fn edge_radius(&self, term: Term, edge: usize) -> f64 {
+        let edges = &self.scene.edges;
+        match () {
+            () if self.student.makes_slip(term, Slip::EndRadius) => self.scene.particles[edges[edge].first].radius,
+            () if self.student.makes_slip(term, Slip::FirstRadius) => edges[0].radius,
+            () => edges[edge].radius,
+        }
     }
 }
 

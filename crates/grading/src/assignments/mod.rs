@@ -40,17 +40,17 @@ impl SuiteVersion {
 /// The suite for the milestones before t2m2. Existing servers and courses may still use its name.
 const EARLIER_VERSION: SuiteVersion = SuiteVersion { suite: include_str!("earlier/suite.toml"), scenes: None };
 
-/// Includes the two versions from an assignment's folder.
-macro_rules! two_versions {
-    ($key:literal) => {
+/// Includes the versions from an assignment's folder: the files of the published ones, and then of the newest.
+macro_rules! include_versions {
+    ($key:literal, $($published:literal)+, $newest:literal) => {
         [
-            SuiteVersion {
-                suite: include_str!(concat!($key, "/suite-1.toml")),
-                scenes: Some(include_str!(concat!($key, "/version-1.txt"))),
-            },
+            $(SuiteVersion {
+                suite: include_str!(concat!($key, "/suite-", $published, ".toml")),
+                scenes: Some(include_str!(concat!($key, "/version-", $published, ".txt"))),
+            },)+
             SuiteVersion {
                 suite: include_str!(concat!($key, "/suite.toml")),
-                scenes: Some(include_str!(concat!($key, "/version-2.txt"))),
+                scenes: Some(include_str!(concat!($key, "/version-", $newest, ".txt"))),
             },
         ]
     };
@@ -59,12 +59,12 @@ macro_rules! two_versions {
 /// Returns the versions of an assignment's suite, the oldest first.
 pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
     match assignment {
-        Assignment::T1M1 => &two_versions!("t1m1"),
-        Assignment::T1M2 => &two_versions!("t1m2"),
-        Assignment::T1M3 => &two_versions!("t1m3"),
-        Assignment::T2M1 => &two_versions!("t2m1"),
-        Assignment::T2M2 => &two_versions!("t2m2"),
-        Assignment::T2M3 => &two_versions!("t2m3"),
+        Assignment::T1M1 => &include_versions!("t1m1", 1, 2),
+        Assignment::T1M2 => &include_versions!("t1m2", 1, 2),
+        Assignment::T1M3 => &include_versions!("t1m3", 1, 2),
+        Assignment::T2M1 => &include_versions!("t2m1", 1 2, 3),
+        Assignment::T2M2 => &include_versions!("t2m2", 1 2, 3),
+        Assignment::T2M3 => &include_versions!("t2m3", 1, 2),
     }
 }
 
@@ -84,7 +84,7 @@ pub fn find_version(name: &str) -> Option<(Assignment, SuiteVersion)> {
     Some((assignment, all[number]))
 }
 
-/// Returns the names of the built-in suites with their versions, such as `t2m2@2`. The newest version for the default
+/// Returns the names of the built-in suites with their versions, such as `t2m2@3`. The newest version for the default
 /// assignment comes first.
 pub fn suite_names() -> impl Iterator<Item = String> {
     Assignment::list_default_first().into_iter().flat_map(|assignment| {
@@ -111,22 +111,34 @@ mod tests {
     #[test]
     fn versions_are_named_and_the_newest_is_meant_without_a_number() {
         let all: Vec<String> = suite_names().collect();
-        let two = |key: &str| [format!("{key}@2"), format!("{key}@1")];
-        assert_eq!(all, ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1", "t2m3"].map(two).concat());
+        let names = [
+            "t2m2@3", "t2m2@2", "t2m2@1", "t1m1@2", "t1m1@1", "t1m2@2", "t1m2@1", "t1m3@2", "t1m3@1", "t2m1@3",
+            "t2m1@2", "t2m1@1", "t2m3@2", "t2m3@1",
+        ];
+        assert_eq!(all, names);
         assert!(find_version("earlier@1").is_some() && find_version("earlier").is_some(), "the name is in use");
         assert_eq!(default_name(), all[0]);
         let suite = |name: &str| find_version(name).map(|(_, version)| version.suite);
-        assert_eq!(suite("t2m2"), suite("t2m2@2"));
+        assert_eq!(suite("t2m2"), suite("t2m2@3"));
         assert_eq!((suite("T1M3"), suite("T2M2@1")), (suite("t1m3"), suite("t2m2@1")));
         assert_ne!(suite("t2m2@1"), suite("t2m2@2"));
-        for unknown in ["t2m2@0", "t2m2@3", "t2m2@", "t2m2@01", "t9m9@1", "@1", ""] {
+        for unknown in ["t2m2@0", "t2m2@4", "t2m2@", "t2m2@01", "t9m9@1", "@1", ""] {
             assert!(suite(unknown).is_none(), "{unknown}");
         }
     }
 
     #[test]
     fn published_versions_have_their_scenes_still() {
-        let published = [("t1m1@1", 6), ("t1m2@1", 11), ("t1m3@1", 5), ("t2m1@1", 13), ("t2m2@1", 85), ("t2m3@1", 6)];
+        let published = [
+            ("t1m1@1", 6),
+            ("t1m2@1", 11),
+            ("t1m3@1", 5),
+            ("t2m1@1", 13),
+            ("t2m1@2", 77),
+            ("t2m2@1", 85),
+            ("t2m2@2", 116),
+            ("t2m3@1", 6),
+        ];
         for (name, scenes) in published {
             let (assignment, first) = find_version(name).expect("a version");
             let listed: Vec<&str> = first.scenes.expect("a list").lines().collect();

@@ -67,7 +67,9 @@ slips! {
     OneHalf "lacks one of its two blocks off the diagonal";
     OtherMatrix "is added to the wrong matrix";
     NotStrict "counts equality, too";
+    Margin "ignores slow approaches";
     EndRadius "uses the radius of the edge's first end instead of the edge's own";
+    FirstRadius "uses the radius of the first edge for all edges";
     Unclamped "uses the closest point of the whole line, even beyond the ends of the edge";
     Mirrored "measures from the wrong end of the edge";
     Negated "measures the closest point of an edge in the wrong direction from its first end";
@@ -126,8 +128,11 @@ pub(super) const BLOCKS: &[Slip] =
 impl Slip {
     /// Returns whether bodies without a force remain unaffected.
     pub fn keeps_distance(self) -> bool {
-        use Slip::{Always, EndRadius, Middle, Mirrored, Negated, Rounded, ToPoint, Truncated, Unclamped, Undivided};
+        use Slip::{
+            Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, Rounded, ToPoint, Truncated, Unclamped,
+            Undivided,
+        };
         let moves_point = matches!(self, Middle | Mirrored | Negated | Rounded | ToPoint | Truncated | Unclamped);
-        !moves_point && !matches!(self, Always | EndRadius | Undivided)
+        !moves_point && !matches!(self, Always | EndRadius | FirstRadius | Undivided)
     }
 }

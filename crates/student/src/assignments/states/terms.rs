@@ -215,8 +215,8 @@ terms! {
     Part::Penalty(PairKind::ParticleEdge) => {
         PenaltyEdges "penalty-edges" "The penalty force between a particle and an edge":
             "k (|n| - r_i - r_e - h) u, with shares 1 - alpha and alpha of the ends" [0 0 0] true &[PENALTY[0],
-            PENALTY[1], PENALTY[2], PENALTY[3], PENALTY[4], ALPHA,
-            &[Slip::EndRadius, Slip::SharesExchanged, Slip::EqualShares, Slip::FullShares, Slip::OneEnd] ];
+            PENALTY[1], PENALTY[2], PENALTY[3], PENALTY[4], ALPHA, &[Slip::EndRadius, Slip::FirstRadius,
+            Slip::SharesExchanged, Slip::EqualShares, Slip::FullShares, Slip::OneEnd] ];
     }
     Part::Penalty(PairKind::ParticleHalfPlane) => {
         PenaltyHalfPlanes "penalty-half-planes" "The penalty force between a particle and a half-plane":
@@ -241,7 +241,7 @@ terms! {
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
         OverlapEdges "overlap-edges" "The test of overlap between a particle and an edge": "|n| < r_1 + r_e" [0 0 0]
-            false &[APPROACH, &[Slip::FirstOnly, Slip::SecondOnly, Slip::EndRadius] ];
+            false &[APPROACH, &[Slip::FirstOnly, Slip::SecondOnly, Slip::EndRadius, Slip::FirstRadius] ];
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
         OverlapHalfPlanes "overlap-half-planes" "The test of overlap between a particle and a half-plane": "|n| < r"
@@ -249,16 +249,16 @@ terms! {
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         ApproachParticles "approach-particles" "The test of approach between two particles": "(v_1 - v_2) . n > 0"
-            [0 0 0] false &[APPROACH, &[Slip::FirstOnly, Slip::SecondOnly] ];
+            [0 0 0] false &[APPROACH, &[Slip::Margin, Slip::FirstOnly, Slip::SecondOnly] ];
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
         ApproachEdges "approach-edges" "The test of approach between a particle and an edge":
             "(v_1 - (v_2 + alpha (v_3 - v_2))) . n > 0" [0 0 0] false &[APPROACH,
-            &[Slip::FirstOnly, Slip::SecondOnly, Slip::Middle, Slip::Mirrored] ];
+            &[Slip::Margin, Slip::FirstOnly, Slip::SecondOnly, Slip::Middle, Slip::Mirrored, Slip::Unclamped] ];
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
         ApproachHalfPlanes "approach-half-planes" "The test of approach between a particle and a half-plane":
-            "v . n > 0" [0 0 0] false &[APPROACH] ;
+            "v . n > 0" [0 0 0] false &[APPROACH, &[Slip::Margin] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         NormalParticles "normal-particles" "The contact vector between two particles": "n = x_2 - x_1" [0 0 0] false
