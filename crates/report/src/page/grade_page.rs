@@ -196,7 +196,7 @@ fn describe_score(grade: &Grade) -> String {
 
 /// Renders the text that a build printed.
 fn build_output(build: &Build) -> String {
-    render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
+    render_output("What it printed", &build.output, true, &mut OUTPUT_BUDGET.clone())
 }
 
 /// Describes who sees groups with this visibility.
@@ -237,8 +237,10 @@ impl<'a> Article<'a> {
             (Some(card), CardDetail::Rounded) => card.round_motions(&key),
             _ => String::new(),
         };
-        let mut outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
-            + &render_output("Standard error", &scene.stderr, room_of_outputs);
+        // Without a card, the output is all that there is to see.
+        let is_open = shown.is_empty();
+        let mut outputs = render_output("Standard output", &scene.stdout, is_open, room_of_outputs)
+            + &render_output("Standard error", &scene.stderr, is_open, room_of_outputs);
         if outputs.is_empty() && shown.is_empty() && scene.result.ended.is_some() && *room_of_outputs > 0 {
             outputs = "<p class=\"hint\">It printed nothing.</p>\n".to_owned();
         }
@@ -253,7 +255,7 @@ pub(super) fn scene_key(name: &str) -> String {
 }
 
 /// Renders a program's output, cut to the remaining space.
-fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
+fn render_output(heading: &str, output: &str, is_open: bool, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }
@@ -269,8 +271,9 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
             .to_owned();
     }
     *room -= shown.len();
+    let open = if is_open { " open" } else { "" };
     format!(
-        "<details class=\"table\"><summary>{heading}</summary><pre tabindex=\"0\" role=\"region\" \
+        "<details class=\"table\"{open}><summary>{heading}</summary><pre tabindex=\"0\" role=\"region\" \
          aria-label=\"{heading}\">{shown}{cut}</pre></details>\n"
     )
 }

@@ -283,7 +283,10 @@ fn a_program_that_prints_nothing_is_reported_as_silent() {
         ..SceneResult::without_run("Group/scene", 5, Verdict::RuntimeError, reason.clone())
     };
     assert!(page_of(vec![result("")], None).contains("<p class=\"hint\">It printed nothing.</p>"));
-    assert!(!page_of(vec![result("no memory")], None).contains("It printed nothing."));
+    // A scene without pictures shows what the program printed.
+    let html = page_of(vec![result("no memory")], None);
+    assert!(html.contains("<details class=\"table\" open><summary>Standard error</summary>"), "{html}");
+    assert!(!html.contains("It printed nothing."));
     let traces = SceneResult { ended: None, ..result("") };
     assert!(!page_of(vec![traces], None).contains("It printed nothing."), "there was no program");
 }
@@ -366,7 +369,6 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
     }
 }
 
-/// A named mistake comes before unexplained scenes. Of its scenes, the one with the fewest findings comes first.
 #[test]
 fn a_program_whose_files_are_missing_is_not_sent_to_a_debugger() {
     for (code, advises_debugger) in [(127, false), (1, true)] {
@@ -387,6 +389,7 @@ fn a_program_whose_files_are_missing_is_not_sent_to_a_debugger() {
     }
 }
 
+/// A named mistake comes before unexplained scenes. Of its scenes, the one with the fewest findings comes first.
 #[test]
 fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let named = |scene: &str, id: &str| {
