@@ -312,7 +312,7 @@ panelActions.set("pair", () => {
   }
 });
 
-openPanel({ "#all": "submission", "#try": "try", "#pair": "pair" }[location.hash] ?? "check");
+showPanel(findPanel());
 compiledModule.then(
   () => {
     document.documentElement.dataset.ready = "";

@@ -67,7 +67,19 @@ function save(name, bytes, type) {
 // Tabs that follow the ARIA practices: the arrow keys move from one tab to the next.
 const tabs = [...document.querySelectorAll("[role=tab]")];
 const panelActions = new Map();
+// The address names the open tab, so that links open a tab, and "Back" returns to the one before.
+function findPanel() {
+  const named = tabs.find((tab) => location.hash === `#${tab.dataset.hash}`);
+  const current = location.hash ? tabs.find((tab) => tab.tabIndex === 0) : tabs[0];
+  return (named ?? current).dataset.panel;
+}
 function openPanel(name, focus) {
+  if (name === findPanel()) return showPanel(name, focus);
+  history.pushState(null, "", `#${tabs.find((tab) => tab.dataset.panel === name).dataset.hash}`);
+  showPanel(name, focus);
+}
+addEventListener("popstate", () => showPanel(findPanel()));
+function showPanel(name, focus) {
   for (const tab of tabs) {
     const isSelected = tab.dataset.panel === name;
     tab.setAttribute("aria-selected", String(isSelected));

@@ -82,14 +82,12 @@ async function simulateChange() {
   document.documentElement.dataset.tried = $("source").value.length;
 }
 
-// A fault of the markup, such as a tag without its end, often causes errors at other places.
-const isOfMarkup = ({ message }) => /`<|` inside `|quotation mark|without (its )?end/.test(message);
-
 function showResult(value) {
   const { problems, more, steps, of, particles, edges, halfPlanes, stopped } = value;
   markProblems(problems);
   const errorCount = problems.filter((problem) => problem.error).length;
-  problems.sort((one, other) => isOfMarkup(other) - isOfMarkup(one));
+  // Faults of the markup come first, because other errors may follow from them.
+  problems.sort((one, other) => other.isMarkup - one.isMarkup);
   $("problems").replaceChildren(
     ...problems.map(({ error, line, column, message, help, from, to }) =>
       el(

@@ -94,10 +94,10 @@ pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, O
 }
 
 fn problem_view(problem: &Problem) -> Value {
-    let Problem { severity, line, column, span, message, help, .. } = problem;
+    let Problem { severity, line, column, span, message, help, is_markup, .. } = problem;
     json!({
         "error": *severity == Severity::Error, "line": line, "column": column, "from": span.start, "to": span.end,
-        "message": message, "help": help,
+        "message": message, "help": help, "isMarkup": is_markup,
     })
 }
 

@@ -106,6 +106,7 @@ mod tests {
             attribute: None,
             message: "it is wrong".to_owned(),
             help: Some("do better".to_owned()),
+            is_markup: false,
         }
     }
 

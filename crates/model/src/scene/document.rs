@@ -114,6 +114,7 @@ impl<'t> DocumentReader<'t, '_> {
                 self.report.add_error(|| {
                     Problem::from_element(open.name, &open.span, format!("`<{}>` is never closed", quote(open.name)))
                         .with_help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
+                        .in_markup()
                 });
             }
             self.document.is_broken = true;
@@ -127,7 +128,7 @@ impl<'t> DocumentReader<'t, '_> {
         };
         let first = self.text.get(at..).and_then(|rest| rest.chars().next());
         let end = at + first.map_or(0, char::len_utf8);
-        self.report.add_error(|| Problem::new(at..end, message).with_optional_help(help));
+        self.report.add_error(|| Problem::new(at..end, message).with_optional_help(help).in_markup());
     }
 
     fn read_document_type(&mut self, span: Range<usize>) {
@@ -161,7 +162,7 @@ impl<'t> DocumentReader<'t, '_> {
         let name = &inner[..name_length];
         if name.is_empty() {
             self.document.is_broken = true;
-            self.report.add_error(|| Problem::new(span.clone(), "no element name after `<`"));
+            self.report.add_error(|| Problem::new(span.clone(), "no element name after `<`").in_markup());
             return;
         }
         let name_span = span.start..span.start + 1 + name_length;
@@ -233,9 +234,10 @@ impl<'t> DocumentReader<'t, '_> {
         }
         self.document.is_broken = true;
         self.report.add_error(|| {
-            Problem::from_element(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).with_help(
-                format!("only elements directly in `scene` count; is the end of `{}` missing?", quote(parent.name)),
-            )
+            let (inner, outer) = (quote(name), quote(parent.name));
+            Problem::from_element(name, span, format!("`{inner}` inside `{outer}`"))
+                .with_help(format!("only elements directly in `scene` count; is the end of `{outer}` missing?"))
+                .in_markup()
         });
     }
 
@@ -277,6 +279,7 @@ impl<'t> DocumentReader<'t, '_> {
                     self.report.add_error(|| {
                         Problem::from_element(last.name, &last.span, format!("`<{}>` is not closed", quote(last.name)))
                             .with_help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
+                            .in_markup()
                     });
                 }
                 self.open_elements.truncate(self.open_elements.len() - above);
@@ -289,6 +292,7 @@ impl<'t> DocumentReader<'t, '_> {
                     let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
                     Problem::from_element(name, &span, format!("`</{}>` closes nothing", quote(name)))
                         .with_optional_help(help)
+                        .in_markup()
                 });
                 if !slip {
                     return;

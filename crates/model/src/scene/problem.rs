@@ -32,6 +32,8 @@ pub struct Problem {
     pub message: String,
     /// The allowed values, or the remedy.
     pub help: Option<String>,
+    /// Whether the fault is in the markup, such as a tag without its end. Other problems may follow from it.
+    pub is_markup: bool,
 }
 
 impl fmt::Display for Problem {
@@ -84,7 +86,17 @@ impl std::error::Error for Problems {}
 impl Problem {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
         let (severity, message) = (Severity::Error, message.into());
-        Self { severity, line: 1, column: 1, span, element: None, attribute: None, message, help: None }
+        Self {
+            severity,
+            line: 1,
+            column: 1,
+            span,
+            element: None,
+            attribute: None,
+            message,
+            help: None,
+            is_markup: false,
+        }
     }
 
     /// Creates a problem of the element `element`.
@@ -94,6 +106,10 @@ impl Problem {
 
     pub(super) fn with_attribute(self, name: &str) -> Self {
         Self { attribute: Some(quote(name)), ..self }
+    }
+
+    pub(super) fn in_markup(self) -> Self {
+        Self { is_markup: true, ..self }
     }
 
     pub(super) fn with_help(self, help: impl Into<String>) -> Self {

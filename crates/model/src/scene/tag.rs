@@ -120,6 +120,7 @@ fn syntax_problem(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> 
     };
     Problem::from_element(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name))
         .with_help(help)
+        .in_markup()
 }
 
 /// Returns whether a byte is white space of XML.

@@ -435,6 +435,22 @@ fn broken_nesting() {
 }
 
 #[test]
+fn faults_of_the_markup_are_marked() {
+    for (inner, is_markup) in [
+        ("<dragdamping b/>", true),
+        ("<dragdamping b='1'>", true),
+        ("<dragdamping b='1/>", true),
+        ("<dragdamping b='1'><foo/>", true),
+        ("</scene>", true),
+        ("<dragdamping b='x'/>", false),
+        ("<foo/>", false),
+    ] {
+        let problems = read("x.xml", format!("<scene>{START}{TWO}{inner}</scene>").as_bytes()).expect_err("an error");
+        assert_eq!(problems.list[0].is_markup, is_markup, "{inner}");
+    }
+}
+
+#[test]
 fn text_and_other_markup() {
     says(
         "hello &amp; <![CDATA[you]]>",
