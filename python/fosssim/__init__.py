@@ -166,7 +166,7 @@ _POLYNOMIAL = np.dtype([*_LOCATION, ("number", np.int32), ("start", np.int64), (
 class Trace:
     """A trace of a scene: the output of ``FOSSSim -o``, plain or compressed with gzip.
 
-    If a trace is damaged or cut, it contains the records before the damage, and ``problem`` describes it.
+    If a trace is damaged or cut short, it contains the records before the damage, and ``problem`` describes it.
     ``asset:Group/name`` is the scene's recording, and ``asset:Group/name/flawed`` is a built-in wrong trace.
     """
 

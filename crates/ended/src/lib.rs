@@ -68,7 +68,7 @@ impl fmt::Display for RunEnd {
             Self::Exited(code) => write!(formatter, "exited with code {code}"),
             Self::Signalled(signal) => write!(formatter, "was killed by signal {signal} ({})", signal_name(*signal)),
             Self::CpuLimit => formatter.write_str("used up its processor time"),
-            Self::WallLimit => formatter.write_str("used up its time on the clock"),
+            Self::WallLimit => formatter.write_str("used up its wall time"),
             Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
             Self::TraceLimit => formatter.write_str("wrote more than allowed to the trace"),
             Self::ProcessLimit => formatter.write_str("had more threads and processes than allowed"),

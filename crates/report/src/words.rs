@@ -142,7 +142,7 @@ pub fn build(end: &BuildEnd) -> String {
     match end {
         BuildEnd::Success => "the build succeeded".to_owned(),
         BuildEnd::Failure(ended) => format!("the build {ended}"),
-        BuildEnd::MissingProgram(program) => format!("the build made no {program}"),
+        BuildEnd::MissingProgram(program) => format!("the build did not create {program}"),
         BuildEnd::UnusableProgram(why) => format!("the built program can't be used: {why}"),
         BuildEnd::UnusableSources(why) => format!("the submission can't be built: {why}"),
         BuildEnd::MissingScript(command) => format!("the submission lacks {command}, which builds it"),
@@ -165,7 +165,7 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
         WrongTrace::NoResult(error) => describe_step_error(error),
         WrongTrace::Borderline => {
-            "most of the trace's decisions differ from the reference's, although only round-off could flip them"
+            "most of the trace's decisions differ from the reference's, although only round-off could change them"
                 .to_owned()
         }
         WrongTrace::Undecided => "no fault was found before judging stopped, because it would take too long".to_owned(),

@@ -255,7 +255,7 @@ fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style:
     };
     let plural = if found.len() == 1 { "a decision" } else { "decisions" };
     let mut text = format!(
-        "\n{note}: {scene} has {plural} that round-off may flip; by the original's rules correct programs may fail\n"
+        "\n{note}: {scene} has {plural} that round-off may change; by the original's rules correct programs may fail\n"
     );
     for decision in found.iter().take(MAX_LISTED) {
         let word = if decision.collides { "collide" } else { "do not collide" };

@@ -272,9 +272,9 @@ fosssim_num::closed_set! {
     pub enum WrongPositions {
         /// The first round starts from the positions that the integrator predicted.
         Prediction =
-            "the first zones are searched on the predicted positions, not on those after the impulse rounds",
+            "the search for the first zones uses the predicted positions, not those after the impulse rounds",
         /// The first round does not start from the positions after the impulse rounds.
-        First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
+        First = "the search for the first zones uses wrong positions, not those after the impulse rounds",
         /// The detection after the failsafe starts from the positions before the failsafe.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",
     }
@@ -296,9 +296,9 @@ fosssim_num::closed_set! {
         /// The zones are wrong after they have grown.
         Growth = "zones are right in the first round, but not as they grow",
         /// The zones grow in too few rounds.
-        Fewer = "the zones make fewer rounds than they should",
+        Fewer = "the zones grow in fewer rounds than they should",
         /// The zones grow in too many rounds.
-        More = "the zones make more rounds than they should",
+        More = "the zones grow in more rounds than they should",
         /// From a later round on, the zones or the number of rounds are wrong.
         Later = "the zones are right in the first round, but later rounds are wrong or too few",
     }

@@ -92,7 +92,7 @@ pub enum Malformation {
         left: u64,
     },
     /// The bytes end before or inside a list's count.
-    #[error("the count of the {list} list is cut: {left} of its 4 bytes are left")]
+    #[error("the count of the {list} list is cut short: {left} of its 4 bytes are left")]
     CountCut {
         /// The list concerned.
         list: RecordList,

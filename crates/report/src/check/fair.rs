@@ -37,7 +37,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     if fair.borderline > 0 {
         let (verb, plural) = if fair.borderline == 1 { ("was", "") } else { ("were", "s") };
         line(format!(
-            "{} decision{plural} that round-off or small coefficients may flip {verb} accepted as in the trace",
+            "{} decision{plural} that round-off or small coefficients may change {verb} accepted as in the trace",
             group_digits(fair.borderline)
         ));
         for decision in &fair.borderline_examples {
@@ -91,7 +91,7 @@ pub(super) fn summarize(judgement: &Judgement, outcome: &Outcome) -> String {
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),
         Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
         Some(FairRefusal::Undecided) => {
-            Some("most of its decisions differ from the reference's, though only round-off could flip them")
+            Some("most of its decisions differ from the reference's, though only round-off could change them")
         }
         None => None,
     };

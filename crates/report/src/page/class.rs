@@ -267,7 +267,7 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", format_points(figures.max_points))),
         (median, "median, of submissions that were run".to_owned()),
-        (unsolved.to_string(), "scenes without a right answer".to_owned()),
+        (unsolved.to_string(), "scenes without a correct answer".to_owned()),
     ];
     let since = figures
         .submissions_since

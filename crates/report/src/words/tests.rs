@@ -33,8 +33,8 @@ fn a_limit_says_how_far_the_trace_came() {
         summarize(&SceneResult { ended: Some(RunEnd::WallLimit), ..result })
     };
     let time = Limit::Time(Duration::from_millis(2500));
-    assert_eq!(stopped(time, 4), "the program used up its time on the clock (2.5 s) at step 5 of 15");
-    assert_eq!(stopped(time, 15), "the program used up its time on the clock (2.5 s) after its last step");
+    assert_eq!(stopped(time, 4), "the program used up its wall time (2.5 s) at step 5 of 15");
+    assert_eq!(stopped(time, 15), "the program used up its wall time (2.5 s) after its last step");
     let crash = SceneResult::without_run(
         "a/b",
         15,

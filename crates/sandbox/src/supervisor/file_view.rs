@@ -127,13 +127,13 @@ fn new_root(order: &RunOrder) -> Result<FileView, Failure> {
         .chain((!order.is_in_memory).then(|| (wire::to_path(&order.folder), Access::Write)))
     {
         view.mount_place(&path, access)
-            .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
+            .map_err(|error| Failure::new(format!("make {} visible", path.display()), &error))?;
     }
     let folders = file_rules::LIBRARY_FOLDERS.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named_paths.iter().map(wire::to_path)) {
         // Only the links on the path are created. The targets of links are among the executable files, or were
         // replaced.
-        view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
+        view.resolve(&path).map_err(|error| Failure::new(format!("make {} visible", path.display()), &error))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
         symlink(format!("/proc/self/fd{number}"), name).map_err(failure_at("make /dev"))?;

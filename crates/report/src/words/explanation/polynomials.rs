@@ -49,7 +49,7 @@ const fn power_name(power: usize) -> &'static str {
 /// Renders a line of the exact form.
 pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
     match detail {
-        PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials per detection"),
+        PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials are logged per detection"),
         PolynomialDetail::RightUpTo(error) => format!("right up to {error:.0e} of the size of its terms"),
         PolynomialDetail::Differs { subject, power, count, of } => {
             let place = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();

@@ -160,19 +160,19 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
             format!("each change is {} the right amount", describe_ratio(Ratios::All(*ratio)))
         }
         StageDetail::Order => {
-            "per particle: the particles after it, the edges of which it is not an end, the half-planes".to_owned()
+            "right order for each particle: later particles, edges of which it is not an end, half-planes".to_owned()
         }
         StageDetail::Impacts { right: false, count, low, high } => {
-            format!("times of impact of these ({count}): {low:.4} to {high:.4}")
+            format!("times of impact of the affected contacts ({count}): {low:.4} to {high:.4}")
         }
         StageDetail::Impacts { right: true, count, low, high } => {
-            format!("of those that are right ({count}): {low:.4} to {high:.4}")
+            format!("times of impact of the right contacts ({count}): {low:.4} to {high:.4}")
         }
         StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, 1.0) => return None,
         StageDetail::Vectors(Ratios::All(ratio)) if is_about(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
         StageDetail::Vectors(ratios) => {
-            format!("{} as long in the direction of the right one", describe_ratio(*ratios))
+            format!("{} the length of the right one, in its direction", describe_ratio(*ratios))
         }
         StageDetail::VectorError(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", describe_ratio(*ratios)),
@@ -199,16 +199,16 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         StageDetail::StoppedVelocities(Ratios::All(ratio)) if is_about(*ratio, 1.0) => {
             "they keep their earlier velocity".to_owned()
         }
-        StageDetail::StoppedVelocities(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
+        StageDetail::StoppedVelocities(ratios) => format!("{} their earlier velocity", describe_ratio(*ratios)),
         StageDetail::CenterMotion(Ratios::All(ratio)) if is_about(*ratio, 0.0) => "it does not move".to_owned(),
         StageDetail::CenterMotion(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
-        StageDetail::CenterMotion(ratios) => format!("it moves {} as far", describe_ratio(*ratios)),
+        StageDetail::CenterMotion(ratios) => format!("it moves {} as far as it should", describe_ratio(*ratios)),
         StageDetail::CenterDirection => "its direction is wrong, too".to_owned(),
         StageDetail::Rotations(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
             "they hardly turn".to_owned()
         }
         StageDetail::Rotations(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
-        StageDetail::Rotations(ratios) => format!("they turn {} as far", describe_ratio(*ratios)),
+        StageDetail::Rotations(ratios) => format!("they turn {} as far as they should", describe_ratio(*ratios)),
         StageDetail::Velocities(ratios) => {
             format!("{} the displacement divided by the step size", describe_ratio(*ratios))
         }

@@ -148,7 +148,7 @@ async fn resolve(transaction: &mut Transaction, provider: &Provider, person: &Pr
         if let Some(row) = transaction.row(statement, values![mailbox]).await? {
             let account = row.int("id")?;
             if identity::is_trusted(transaction, account).await? {
-                let detail = format!("{mailbox} is staff here: sign in by your link, and connect your account there");
+                let detail = format!("{mailbox} is staff here: sign in with your link, and connect your account there");
                 return Err(Problem::refused_sign_in(detail));
             }
             // Staff could have signed in as this account.

@@ -248,6 +248,6 @@ async fn only_people_of_the_domain_come_in(fresh: Fresh) {
     teacher.post_json("/api/v1/courses/physics/members/ada/link", "{}").expect(403);
     assert_eq!(login(&sign_in(&server, &provider, "id-8", named).0), "ada-2", "the address has another owner now");
     // Staff and administrators connect their accounts in a browser that is signed in.
-    assert!(refused(&|_| {}, "teacher").contains("sign in by your link"));
+    assert!(refused(&|_| {}, "teacher").contains("sign in with your link"));
     assert_eq!(login(&sign_in(&server, &provider, "admin", |_| {}).0), "admin-2");
 }
