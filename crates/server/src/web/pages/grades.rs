@@ -97,11 +97,9 @@ impl GradesQuery {
             points.and_then(|points| points.parse::<f64>().ok()).unwrap_or(-1.0)
         };
         match self.sort.as_str() {
-            "name" => standings.sort_by_cached_key(|standing| standing.name.to_lowercase()),
             "points" => standings.sort_by(|standing, other| points(other).total_cmp(&points(standing))),
             "submissions" => standings.sort_by_key(|standing| std::cmp::Reverse(standing.submissions)),
-            // The students are already sorted by login.
-            _ => {}
+            _ => standings.sort_by_cached_key(|standing| standing.name.to_lowercase()),
         }
         let match_count = standings.len();
         let pages = match_count.div_ceil(PAGE_SIZE).max(1);

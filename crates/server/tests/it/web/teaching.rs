@@ -84,6 +84,19 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     assert!(page.matches("became student</li>").count() == 70 && page.matches("<tr>").count() < 20, "{page}");
 }
 
+/// Checks the order of a class, and that the heading of its column shows it.
+fn check_order(teacher: &Client) {
+    let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
+    assert!(
+        class.contains("<th scope=\"col\" aria-sort=\"ascending\"><button") && !class.contains("descending"),
+        "{class}"
+    );
+    let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
+    assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
+    let heading = "<th scope=\"col\" class=\"num\" aria-sort=\"descending\">";
+    assert!(class.contains(heading) && class.matches("aria-sort").count() == 1, "{class}");
+}
+
 async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();
@@ -120,10 +133,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let class = teacher.get("/c/physics/a/m1/class?q=EVE").expect(200).text();
     let has = |login: &str| class.contains(&format!("students/{login}"));
     assert!(class.contains("1 student.") && has("eve") && !has("ada"), "{class}");
-    let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
-    assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
-    let heading = "<th scope=\"col\" class=\"num\" aria-sort=\"descending\">";
-    assert!(class.contains(heading) && class.matches("aria-sort").count() == 1, "{class}");
+    check_order(&teacher);
     check_parts(&server, &admin, &teacher);
     // The wrong scenes of students whose programs ran.
     let dora = server.member(&admin, "physics", "dora", "student");
