@@ -585,6 +585,7 @@ test("the address names the open tab, and Back returns to the one before", async
   await page.goto(`file://${html}?new#pair`);
   assert.equal(await selected(), "One pair");
   await page.locator("#decision").waitFor();
+  assert.equal(await page.title(), "One pair - fosssim-oracle");
   assert.deepEqual(complaints, []);
   await close();
 });

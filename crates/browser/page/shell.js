@@ -85,6 +85,7 @@ function showPanel(name, focus) {
     tab.setAttribute("aria-selected", String(isSelected));
     tab.tabIndex = isSelected ? 0 : -1;
     $(tab.dataset.panel).hidden = !isSelected;
+    if (isSelected) document.title = `${tab.textContent} - fosssim-oracle`;
     if (isSelected && focus) tab.focus();
   }
   document.body.classList.toggle("reads", name === "check" && !$("frame").hidden);
