@@ -1,4 +1,4 @@
-// promise: A trace with a second name is not collected.
+// promise: A trace with several hard links is not collected.
 // expect: exited 0
 // policy: tools
 // leaves: refused
