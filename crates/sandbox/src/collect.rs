@@ -79,7 +79,7 @@ mod tests {
         for (name, expected) in [
             ("link", "a symbolic link"),
             ("way/reference.bin", "a symbolic link"),
-            ("hard", "2 names"),
+            ("hard", "2 hard links"),
             ("folder", "a folder"),
             ("sparse", "the limit is 1000"),
             ("socket", "a socket"),
