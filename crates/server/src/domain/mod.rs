@@ -13,7 +13,7 @@ mod submissions;
 mod view;
 
 pub use accounts::identity::{Link, NewSecret, NewToken, TokenInfo};
-pub use accounts::limits::{Transfer, TransferLimits};
+pub use accounts::limits::{ArchiveTurn, Transfer, TransferLimits};
 pub use assignments::settings::Settings;
 pub(crate) use assignments::settings::{read_moment, time_schema};
 pub use assignments::suites::{Suites, is_file_name};
@@ -117,7 +117,6 @@ impl Deref for App {
 }
 
 pub use accounts::throttle::Throttle;
-pub use accounts::turns::ArchiveTurn;
 
 impl App {
     /// Creates an app with a database and a store.

@@ -1,8 +1,5 @@
 //! The limits on parallel transfers and on stored bytes: for an account, for a course, and for the whole server.
-use crate::domain::{
-    Member, Throttle,
-    accounts::turns::{ArchiveQueue, ArchiveTurn},
-};
+use crate::domain::{Member, Throttle};
 use crate::{
     db::Transaction,
     problem::{self, Problem, ensure},
@@ -13,13 +10,20 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
     time::{Duration, Instant},
 };
-use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
+use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
 /// The transfers that may run in parallel for all accounts together. Each needs a connection, a file and about 100 KiB.
 static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 
 /// The maximum time that an upload waits for other uploads of the same account.
 const TURN_TIMEOUT: Duration = Duration::from_secs(30);
+
+/// The archives that may be checked in parallel, in the order of their arrival. Each may need about 100 MiB, and a
+/// whole processor for seconds.
+static ARCHIVE_CHECKS: Semaphore = Semaphore::const_new(2);
+
+/// The maximum time that an archive waits for a turn.
+const ARCHIVE_TIMEOUT: Duration = Duration::from_secs(60);
 
 /// The maximum number of rejected archives of an account per minute.
 const MAX_REJECTED_PER_MINUTE: u32 = 30;
@@ -36,9 +40,20 @@ pub struct TransferLimits {
     /// The maximum number of bytes that the server stores. With 0 there is no limit.
     pub server: u64,
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
-    turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
-    archives: ArchiveQueue,
+    turns: AccountLocks,
+    archive_turns: AccountLocks,
     rejected_archives: Throttle,
+}
+
+/// A lock for each account that uses one.
+type AccountLocks = Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>;
+
+/// The permission to check an archive, which ends when this value is dropped. An account has one at a time, so that no
+/// account has to wait for more than one archive of another.
+#[derive(Debug)]
+pub struct ArchiveTurn {
+    _account_guard: OwnedMutexGuard<()>,
+    _server_permit: SemaphorePermit<'static>,
 }
 
 /// The permission for a transfer, which ends when this value is dropped.
@@ -65,7 +80,7 @@ impl TransferLimits {
     }
 
     /// Waits until this server handles no other upload of the account.
-    pub(in crate::domain) async fn wait(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
+    pub(in crate::domain) async fn wait(&self, account: i64) -> Result<OwnedMutexGuard<()>, Problem> {
         let turn = find_shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN_TIMEOUT, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("your other uploads are still being stored"))
@@ -96,7 +111,13 @@ impl Member {
     ///
     /// Fails if too many archives wait, or too many of the account's archives were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
-        let turn = self.app.limits.archives.wait(self.account.id).await?;
+        let account_lock = find_shared(&self.app.limits.archive_turns, self.account.id, Default::default);
+        let turn = async {
+            let (guard, permit) = (account_lock.lock_owned().await, ARCHIVE_CHECKS.acquire().await);
+            permit.map(|permit| ArchiveTurn { _account_guard: guard, _server_permit: permit }).ok()
+        };
+        let turn = tokio::time::timeout(ARCHIVE_TIMEOUT, turn).await.ok().flatten();
+        let turn = turn.ok_or_else(|| Problem::unavailable("too many archives are being checked"))?;
         ensure(
             self.app.limits.rejected_archives.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()),
             Problem::too_many(format!(

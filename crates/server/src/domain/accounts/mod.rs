@@ -6,4 +6,3 @@ pub(super) mod newcomer;
 pub(super) mod pending_sign_in;
 pub(super) mod provider;
 pub(super) mod throttle;
-pub(super) mod turns;
