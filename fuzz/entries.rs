@@ -6,7 +6,7 @@ use fosssim_oracle::{
     scene::{Collision, Scene, original},
     sim::{RootSearch, Simulation},
     suite::{config, results},
-    trace::{Digests, Frame, Layout, LenientFrame, LenientReader, Reader, Recorder, Summary, TraceError, Writer},
+    trace::{Frame, Layout, LenientFrame, LenientReader, Reader, Recorder, TraceError, Writer},
 };
 
 /// The scenes of the `trace` target, one per collision type.
@@ -53,7 +53,7 @@ pub fn scene(bytes: &[u8]) {
         while reader.next(&mut frame).expect("our own recording is sound") {
             assert!(reader.notes().is_empty(), "our own recording has nothing odd: {:?}", reader.notes());
         }
-        assert_eq!(reader.count_trailing_bytes(), Ok(0));
+        assert_eq!(reader.offset(), trace.len() as u64);
     }
 }
 
@@ -81,10 +81,6 @@ pub fn trace(bytes: &[u8]) {
     let mut frame = LenientFrame::default();
     let stop = (0..layout.records()).find_map(|_| lenient.next(&mut frame).err());
     assert!(stop.is_none() || strict.is_err(), "what the strict reader accepts, the lenient one does: {stop:?}");
-
-    let sound = strict.as_ref().map_or_else(|error| error.frame, |(records, _)| *records);
-    assert_eq!(Digests::from_stream(trace, layout).records, sound);
-    assert!(!Summary::for_scene(&scene, trace).to_string().is_empty());
 
     let options = replay::Options { threads: 1, ..replay::Options::default() };
     let outcome = replay::judge(&scene, trace, &options, &mut ());
@@ -182,9 +178,9 @@ pub fn wire(bytes: &[u8]) -> usize {
     sandbox::read_messages(bytes)
 }
 
-/// Returns the number of records and of the bytes after them, or the error.
+/// Returns the number of records and of their bytes, or the error.
 fn frames(mut reader: Reader<&[u8]>) -> Result<(u64, u64), TraceError> {
     let mut frame = Frame::default();
     while reader.next(&mut frame)? {}
-    Ok((reader.record_count(), reader.count_trailing_bytes()?))
+    Ok((reader.record_count(), reader.offset()))
 }

@@ -539,7 +539,6 @@ fn endless_files_are_read_up_to_a_limit() {
         (&["check", "scenes/bounce.xml", "huge"], 1),
         (&["check", "scenes/bounce.xml", "empty"], 1),
         (&["explain", "scenes/bounce.xml", "/dev/zero"], 1),
-        (&["trace", "info", "scenes/bounce.xml", "/dev/zero"], 1),
     ] {
         let run = workspace.run(arguments);
         assert_eq!(run.code, Some(verdict), "{arguments:?}: {}", run.shown());

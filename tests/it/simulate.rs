@@ -146,7 +146,6 @@ fn every_command_has_help_with_an_example() {
         &["detect"],
         &["render"],
         &["trace"],
-        &["trace", "info"],
         &["trace", "show"],
         &["record"],
         &["completions"],
@@ -228,5 +227,5 @@ fn every_command_that_the_manual_page_refers_to_has_a_page() {
     assert!(pages > 15, "{pages} pages");
     let run = workspace.run(["man", "trace", "nothing"]);
     assert_eq!(run.code, Some(2));
-    assert!(run.err().contains("fosssim-oracle trace has no command `nothing`; it has info, show"), "{}", run.err());
+    assert!(run.err().contains("fosssim-oracle trace has no command `nothing`; it has show"), "{}", run.err());
 }

@@ -1,17 +1,6 @@
-//! `trace info`, `trace show`.
-use super::workspace::{BEAM, BOUNCE, Workspace};
+//! `trace show`.
+use super::workspace::{BEAM, Workspace};
 use serde_json::Value;
-
-#[test]
-fn info_says_what_a_trace_holds() {
-    let workspace = Workspace::with_trace(BOUNCE);
-    insta::assert_snapshot!("info", workspace.run(["trace", "info", "scene.xml", "trace.bin"]).shown());
-    let run = workspace.run(["trace", "info", "scene.xml", "trace.bin", "--format", "json"]);
-    insta::assert_snapshot!("info_json", run.shown());
-    let trace = workspace.read("trace.bin");
-    workspace.write("cut.bin", &trace[..trace.len() - 9]);
-    insta::assert_snapshot!("info_cut", workspace.run(["trace", "info", "scene.xml", "cut.bin"]).shown());
-}
 
 #[test]
 fn show_puts_one_step_into_words() {
@@ -32,17 +21,4 @@ fn show_puts_one_step_into_words() {
     let run = workspace.run(["trace", "show", "scene.xml", "cut.bin", "--step", "3"]);
     assert_eq!(run.code, Some(2));
     assert!(run.err().contains("cannot show step 3 of the trace cut.bin: byte "), "{}", run.err());
-}
-
-#[test]
-fn streams_without_an_end_are_given_up() {
-    let workspace = Workspace::with_trace(BOUNCE);
-    insta::assert_snapshot!("info_endless", workspace.run(["trace", "info", "scene.xml", "/dev/zero"]).shown());
-    let run = workspace.run(["trace", "info", "scene.xml", "/dev/zero", "--format", "json"]);
-    let json: Value = serde_json::from_slice(&run.stdout).unwrap();
-    assert_eq!((&json["sha256"], &json["all_bytes_read"]), (&Value::Null, &Value::Bool(false)));
-    std::fs::File::create(workspace.path("sparse.bin")).unwrap().set_len(10_000_000_000).unwrap();
-    let run = workspace.run(["trace", "info", "scene.xml", "sparse.bin"]);
-    assert_eq!(run.code, Some(1));
-    assert!(run.out().contains("67108864 bytes follow the last record"), "{}", run.shown());
 }

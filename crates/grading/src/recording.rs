@@ -7,8 +7,9 @@
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},
-    trace::{Digests, Layout, Recorder},
+    trace::{Frame, Layout, Reader, Recorder},
 };
+use sha2::{Digest, Sha256};
 use similar::TextDiff;
 use std::io::{self, Read};
 
@@ -52,13 +53,12 @@ impl Recording {
     pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, RecordError> {
         let scene = scene::read(name, xml)?.scene;
         let trace = simulate_trace(&scene)?;
-        let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
         Ok(Self {
             name: name.to_owned(),
             steps: scene.step_count(),
+            sha256: format_digest(&trace),
+            digests: list_digests(&trace, Layout::for_scene(&scene)),
             trace,
-            sha256: digests.sha256.to_string(),
-            digests: digests.to_string(),
         })
     }
 
@@ -106,6 +106,27 @@ pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
     TextDiff::from_lines(recorded.as_str(), now).unified_diff().context_radius(1).header(&old, &new).to_string()
 }
 
+/// Returns the text of a `.steps` file: for each step the beginning of the SHA-256 of its records' bytes, with the
+/// initial record as step 0, and a line about the whole trace.
+fn list_digests(trace: &[u8], layout: Layout) -> String {
+    let (mut reader, mut frame) = (Reader::from_slice(trace, layout), Frame::default());
+    let (mut text, mut start) = (String::new(), 0);
+    while reader.next(&mut frame).is_ok_and(|is_record| is_record) {
+        let record = reader.record_count() - 1;
+        if !layout.is_mid_record(record) {
+            let end = usize::try_from(reader.offset()).unwrap_or(trace.len());
+            text += &format!("{} {}\n", layout.step_of_record(record), &format_digest(&trace[start..end])[..16]);
+            start = end;
+        }
+    }
+    text + &format!("{} bytes, {} records, sha256 {}\n", trace.len(), reader.record_count(), format_digest(trace))
+}
+
+/// Returns the SHA-256 of some bytes as hexadecimal digits.
+fn format_digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
 /// Simulates a scene, and returns its trace.
 pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, RecordError> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
@@ -148,7 +169,7 @@ mod tests {
         let mut other = recording.clone();
         other.trace[32 * 3 + 1] ^= 1;
         let layout = Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 4 };
-        other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
+        other.digests = list_digests(&other.trace, layout);
         let shown =
             recording.describe_difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
         assert!(shown.contains("differ, beginning at byte 97\n"), "{shown}");

@@ -65,7 +65,7 @@ pub(super) enum Command {
     Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, a GIF, or a movie.
     Render(Box<RenderArguments>),
-    /// Shows the contents of a trace, or one of its steps.
+    /// Shows what a trace contains.
     #[command(subcommand)]
     Trace(TraceCommand),
     /// Records the traces of all scenes of a folder, or checks that they are unchanged.
@@ -291,23 +291,7 @@ pub(super) struct ShrinkArguments {
 Example:
   fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
 pub(super) enum TraceCommand {
-    Info(TraceInfoArguments),
     Show(TraceShowArguments),
-}
-
-/// Reports the contents of a trace, and any damage.
-#[derive(Debug, Args)]
-#[command(after_help = "\
-Example:
-  fosssim-oracle trace info scenes/test00.xml submission.bin")]
-pub(super) struct TraceInfoArguments {
-    /// The scene of the trace, which is needed to read it.
-    pub(super) scene: PathBuf,
-    /// The trace file.
-    pub(super) trace: PathBuf,
-    /// The format of the report.
-    #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
-    pub(super) format: TextOrJson,
 }
 
 /// Shows the log of one step, as text or JSON.

@@ -50,7 +50,6 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),
         Command::Render(arguments) => return render::run(arguments),
-        Command::Trace(TraceCommand::Info(arguments)) => return trace::print_info(arguments),
         Command::Record(arguments) => return record::run(arguments),
         Command::Grade(arguments) => return grade::run(arguments),
         Command::Merge(arguments) => return merge::run(arguments),

@@ -1,27 +1,13 @@
-//! The commands `trace info` and `trace show`, which show what a trace contains.
+//! The command `trace show`, which shows one step of a trace.
 use crate::{
-    cli::{
-        arguments::{TraceInfoArguments, TraceShowArguments},
-        console, exit, input,
-    },
+    cli::{arguments::TraceShowArguments, console, input},
     report::{
         number::format_count,
-        trace::{self as report, ShownRecord, ShownStep},
+        trace::{ShownRecord, ShownStep},
     },
-    trace::{Frame, Layout, Summary, collect_labels},
+    trace::{Frame, Layout, collect_labels},
 };
 use anyhow::{Result, bail};
-
-/// Prints a summary of a trace. If the trace can't be read to its end, the exit code is 1.
-pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
-    let scene = input::read_scene(&arguments.scene)?;
-    let mut trace = input::open_trace(&arguments.trace)?;
-    let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
-    trace.ensure_not_failed()?;
-    let json = || report::info_json(&scene.name, &trace.name, &summary);
-    console::show(arguments.format, || summary.to_string(), json)?;
-    Ok(if summary.trace.stop_error.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
-}
 
 /// Shows one step of a trace.
 pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {

@@ -26,7 +26,7 @@ fn help_is_wrapped_once() {
 #[test]
 fn a_trace_instead_of_the_scene_is_reported_in_one_line() {
     let workspace = Workspace::with_trace(DRIFT);
-    for command in [&["check"][..], &["explain"], &["trace", "info"]] {
+    for command in [&["check"][..], &["explain"]] {
         let run = workspace.run(command.iter().chain(&["trace.bin", "scene.xml"]));
         assert_eq!(run.code, Some(2), "{}", run.shown());
         assert_eq!(run.err().lines().count(), 1, "{}", run.err());
@@ -45,7 +45,7 @@ fn a_trace_instead_of_the_scene_is_reported_in_one_line() {
 #[test]
 fn a_scene_instead_of_the_trace_is_reported_in_one_line() {
     let workspace = Workspace::with_trace(DRIFT);
-    for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "info", "scene.xml", "scene.xml"]] {
+    for command in [&["check", "scene.xml", "scene.xml"][..], &["explain", "scene.xml", "scene.xml"]] {
         let run = workspace.run(command);
         assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
         assert!(run.err().contains("scene.xml is a scene, not a trace"), "{}", run.err());

@@ -189,15 +189,6 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
-    /// More bytes follow the last record than are read.
-    #[error(
-        "more than {limit} bytes follow the last record; they were not all read; the trace belongs to another \
-         scene or never ends"
-    )]
-    Endless {
-        /// The limit in bytes.
-        limit: u64,
-    },
     /// A record has the right number of polynomials, but only a part of them was kept.
     #[error(
         "the record has {logged} polynomials, as many as it should have, but this program compares only the first \

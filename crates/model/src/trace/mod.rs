@@ -5,7 +5,6 @@
 
 mod counts;
 mod decode;
-mod digest;
 mod encode;
 mod error;
 mod frame;
@@ -16,17 +15,14 @@ mod log;
 mod reader;
 mod recorder;
 mod source;
-mod summary;
 mod writer;
 
 pub use counts::EventCounts;
-pub use digest::{Digests, Sha, ShortDigest};
 pub use error::{Malformation, RecordList, TraceError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
 pub use labels::{PolynomialLabel, collect_labels};
 pub use layout::Layout;
 pub use lenient::{LenientFrame, LenientReader, ReadFailure, ReadStop, record_memory};
-pub use reader::{Reader, TRAILING_LIMIT};
+pub use reader::Reader;
 pub use recorder::Recorder;
-pub use summary::Summary;
 pub use writer::{Writer, WrittenTrace};

@@ -10,9 +10,6 @@ use super::{
 use crate::{scene::Scene, sim::PairKind};
 use std::{io::Read, mem::swap};
 
-/// The maximum number of bytes that are read after the last record, 64 MiB, because a stream may be endless.
-pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
-
 /// Reads a trace frame by frame (trace-format.md 1, 2).
 ///
 /// ```
@@ -27,7 +24,7 @@ pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 ///     frames += 1;
 /// }
 /// assert_eq!(frames, 2);
-/// assert_eq!(reader.count_trailing_bytes()?, 0);
+/// assert_eq!(reader.offset(), 64);
 /// # Ok::<(), fosssim_model::trace::TraceError>(())
 /// ```
 #[derive(Debug)]
@@ -39,8 +36,6 @@ pub struct Reader<R> {
     objects: Option<(usize, usize)>,
     notes: Vec<TraceError>,
     stop_error: Option<TraceError>,
-    keeps_raw: bool,
-    raw: Vec<u8>,
 }
 
 impl<'a> Reader<&'a [u8]> {
@@ -64,8 +59,6 @@ impl<R: Read> Reader<R> {
             objects: None,
             notes: Vec::new(),
             stop_error: None,
-            keeps_raw: false,
-            raw: Vec::new(),
         }
     }
 
@@ -73,13 +66,6 @@ impl<R: Read> Reader<R> {
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));
-        self
-    }
-
-    /// Keeps each record's bytes for [`Reader::raw_bytes`].
-    #[must_use]
-    pub fn with_raw_bytes(mut self) -> Self {
-        self.keeps_raw = true;
         self
     }
 
@@ -95,14 +81,7 @@ impl<R: Read> Reader<R> {
         if self.record_count() == self.layout.records() {
             return Ok(false);
         }
-        if self.keeps_raw {
-            self.records.source.start_capture(std::mem::take(&mut self.raw));
-        }
-        let read = self.records.next(&mut self.frame);
-        if self.keeps_raw {
-            self.raw = self.records.source.stop_capture();
-        }
-        if let Err(stop) = read {
+        if let Err(stop) = self.records.next(&mut self.frame) {
             self.stop_error = Some(stop.error.clone());
             return Err(stop.error);
         }
@@ -119,11 +98,6 @@ impl<R: Read> Reader<R> {
     /// objects, sizes below 0 (read as 0) or above 6. At most 16 are kept.
     pub fn notes(&self) -> &[TraceError] {
         &self.notes
-    }
-
-    /// Returns the bytes of the last record, with [`Reader::with_raw_bytes`].
-    pub fn raw_bytes(&self) -> &[u8] {
-        &self.raw
     }
 
     /// Returns the number of records read.
@@ -144,24 +118,6 @@ impl<R: Read> Reader<R> {
     /// Returns the layout of the records.
     pub fn layout(&self) -> Layout {
         self.layout
-    }
-
-    /// Reads to the end of the stream, in bounded memory, and returns the number of bytes after the last record read.
-    ///
-    /// # Errors
-    /// Fails if the stream fails, or with [`Malformation::Endless`] if more than [`TRAILING_LIMIT`] bytes follow.
-    pub fn count_trailing_bytes(&mut self) -> Result<u64, TraceError> {
-        let (offset, record) = (self.offset(), self.record_count());
-        let source = &mut self.records.source;
-        match (source.drain(TRAILING_LIMIT), source.error()) {
-            (_, Some(what)) => Err(TraceError::new(self.layout, record, source.offset(), what)),
-            (None, None) => {
-                // The place is the end of the last record, because there may be no next record.
-                let what = Malformation::Endless { limit: TRAILING_LIMIT };
-                Err(TraceError::new(self.layout, record.saturating_sub(1), offset, what))
-            }
-            (Some(trailing), None) => Ok(trailing),
-        }
     }
 
     /// Records the odd impulses of the last record.

@@ -20,33 +20,19 @@ pub(crate) struct Source<R> {
     length: Option<u64>,
     has_ended: bool,
     error: Option<Malformation>,
-    /// The bytes consumed since `start_capture`.
-    captured_bytes: Option<Vec<u8>>,
 }
 
 impl<R: Read> Source<R> {
     /// Creates a source at the beginning of `stream`.
     pub(crate) fn new(stream: R) -> Self {
-        let (buffer, length, error, tape) = (Vec::new(), None, None, None);
-        Self { stream, buffer, start: 0, end: 0, offset: 0, length, has_ended: false, error, captured_bytes: tape }
+        let (buffer, length, error) = (Vec::new(), None, None);
+        Self { stream, buffer, start: 0, end: 0, offset: 0, length, has_ended: false, error }
     }
 
     /// Returns the source with a known length of the whole stream.
     pub(crate) fn with_length(mut self, bytes: u64) -> Self {
         self.length = Some(bytes);
         self
-    }
-
-    /// Starts keeping consumed bytes in `buffer`, whose old content is dropped.
-    pub(crate) fn start_capture(&mut self, mut buffer: Vec<u8>) {
-        buffer.clear();
-        self.captured_bytes = Some(buffer);
-    }
-
-    /// Stops keeping bytes, and returns those that were consumed since the start. The list is empty if nothing was
-    /// started.
-    pub(crate) fn stop_capture(&mut self) -> Vec<u8> {
-        self.captured_bytes.take().unwrap_or_default()
     }
 
     /// Returns the absolute offset of the next byte.
@@ -82,30 +68,8 @@ impl<R: Read> Source<R> {
     /// Skips `count` bytes of the window.
     #[inline]
     pub(crate) fn consume(&mut self, count: usize) {
-        if let Some(tape) = &mut self.captured_bytes {
-            tape.extend_from_slice(&self.buffer[self.start..self.start + count]);
-        }
         self.start += count;
         self.offset += count as u64;
-    }
-
-    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Returns the number of bytes,
-    /// or `None` if more follow.
-    pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
-        let mut drained = 0;
-        loop {
-            let available = self.ensure(1);
-            if available == 0 {
-                return Some(drained);
-            }
-            let step = available.min(usize::try_from(limit - drained).unwrap_or(usize::MAX));
-            if step == 0 {
-                return None;
-            }
-            self.start += step;
-            self.offset += step as u64;
-            drained += step as u64;
-        }
     }
 
     #[cold]
@@ -175,7 +139,7 @@ mod tests {
         assert_eq!(source.offset(), 7);
         assert_eq!(source.ensure(200), 93);
         assert_eq!(source.window(), &bytes[7..]);
-        assert_eq!(source.drain(93), Some(93));
+        source.consume(93);
         assert_eq!(source.ensure(1), 0);
     }
 
@@ -183,28 +147,7 @@ mod tests {
     fn nothing_beyond_the_known_length_is_read() {
         let mut source = Source::new(&[1_u8; 50][..]).with_length(20);
         assert_eq!(source.ensure(30), 20);
-        assert_eq!(source.drain(u64::MAX), Some(20));
-    }
-
-    #[test]
-    fn no_more_is_drained_than_allowed() {
-        let mut source = Source::new(io::repeat(0));
-        assert_eq!((source.drain(1_000_000), source.offset()), (None, 1_000_000));
-        let mut source = Source::new(&[1_u8; 50][..]);
-        assert_eq!((source.drain(49), source.drain(1)), (None, Some(1)));
-    }
-
-    #[test]
-    fn the_tape_holds_what_was_consumed() {
-        let bytes: Vec<u8> = (0..100).collect();
-        let mut source = Source::new(&bytes[..]);
-        source.ensure(30);
-        source.consume(10);
-        source.start_capture(vec![1, 2, 3]);
-        source.consume(5);
-        source.consume(5);
-        assert_eq!(source.stop_capture(), &bytes[10..20]);
-        source.consume(5);
-        assert_eq!(source.stop_capture(), [0; 0]);
+        source.consume(20);
+        assert_eq!(source.ensure(1), 0);
     }
 }

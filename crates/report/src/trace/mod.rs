@@ -1,7 +1,5 @@
-//! Reports about traces: a summary of a trace, and one of its steps.
+//! The report about one step of a trace.
 
-mod info;
 mod show;
 
-pub use info::info_json;
 pub use show::{ShownRecord, ShownStep};
