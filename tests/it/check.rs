@@ -149,7 +149,6 @@ fn colors_only_decorate() {
         rules,
         steps,
         audit: true,
-        tables: true,
         other_file_kind: None,
     };
     let colored = check.render_text(Style::Color);
@@ -429,16 +428,13 @@ fn json_says_what_the_text_says() {
 }
 
 #[test]
-fn the_cause_comes_first_and_tables_when_they_are_asked_for() {
+fn the_cause_comes_first() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
     workspace.write("trace.bin", changed(BOUNCE, |frames| scale(&mut frames[2], 0, 2.0)));
     let short = workspace.run(["check", "scene.xml", "trace.bin"]).out();
     let place = |words: &str| short.find(words).unwrap_or_else(|| panic!("no {words} in {short}"));
     assert!(place("Likely cause") < place("First difference") && place("First difference") < place("Rule books"));
-    assert!(!short.contains("tolerance  "), "{short}");
-    let whole = workspace.run(["check", "scene.xml", "trace.bin", "--tables"]).out();
-    assert!(whole.contains("accumulated position") && whole.contains("first example"), "{whole}");
 }
 
 #[test]

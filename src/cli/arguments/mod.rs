@@ -181,11 +181,6 @@ pub(super) struct CheckArguments {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with = "step")]
     pub(super) all: bool,
-    /// Show tables, too: residuals, the used share of each tolerance, and all kinds of findings with their first
-    /// examples.
-    #[arg(long)]
-    pub(super) tables: bool,
-
     /// Show only these steps, from 1; 0 is the first record. Several are separated by commas.
     #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = to_step)]
     pub(super) step: Vec<u32>,

@@ -49,7 +49,6 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         rules: arguments.rules,
         steps: &wrong,
         audit: arguments.audit,
-        tables: arguments.tables,
         other_file_kind: trace.probable_kind,
     };
     let accepted = check.is_accepted();

@@ -162,7 +162,6 @@ pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: us
         rules,
         steps: &steps,
         audit: false,
-        tables: false,
         other_file_kind: None,
     };
     let has_trace = trace_name.is_some();

@@ -1,4 +1,4 @@
-//! The verdicts of both rule books, one line for each. The tables of findings are shown on request.
+//! The verdicts of both rule books, one line for each.
 use super::{Check, consequences, fair};
 use crate::{
     number::format_count,

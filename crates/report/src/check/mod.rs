@@ -56,8 +56,6 @@ pub struct Check<'a> {
     pub steps: &'a WrongSteps,
     /// Whether the report includes the counts of root searches, because certificates were audited.
     pub audit: bool,
-    /// Whether the text contains all tables; otherwise it contains only as much as fits on a screen.
-    pub tables: bool,
     /// The kind of file that the trace probably is, if it begins like another kind.
     pub other_file_kind: Option<&'a str>,
 }

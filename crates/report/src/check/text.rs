@@ -2,17 +2,16 @@
 use super::{
     super::{
         explain,
-        number::{format_count, format_g, group_digits},
+        number::{format_count, group_digits},
         step_share,
         style::{Style, TextStyle},
-        table::{Align, Cell, Table},
         words,
     },
-    Check, advice, books, consequences, divergence, fair,
+    Check, advice, books, divergence, fair,
     first_finding::{find_first, is_other_scene},
     further_commands, steps,
 };
-use fosssim_judge::{Book, BookFindings, MissingResult, Outcome, Overall, ReadFailure, Ruling, Stop};
+use fosssim_judge::{Book, MissingResult, Outcome, Overall, ReadFailure, Ruling, Stop};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
@@ -24,7 +23,7 @@ const LIMIT_ADVICE: &str = "only this program has this limit, not the original; 
 const NO_RESULT: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
                       absurdly large in the steps before";
 
-/// The maximum number of explanations that are shown without `--tables`.
+/// The maximum number of explanations that are shown.
 const MAX_EXPLANATIONS: usize = 2;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
@@ -50,22 +49,9 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::advice_lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| shows_mistakes));
-    let has_tables = check.tables;
-    if has_tables {
-        parts.push(render_residuals(outcome, style));
-        parts.extend(fair::render(outcome, style));
-        let account = outcome.findings_by(check.book());
-        // The findings by the fair rules have their own section.
-        if !account.examples.is_empty() && check.book() == Book::Parity {
-            parts.push(render_findings(account, consequences::count_consequences(outcome), style));
-        }
-    } else {
-        parts.extend(books::render(check, style));
-    }
+    parts.extend(books::render(check, style));
     parts.extend(render_section("Notes", "  - ", &list_notes(check), style));
-    let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
-    let commands = render_section("Next", "  $ ", &further_commands::list_commands(check), style);
-    parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
+    parts.extend(render_section("Next", "  $ ", &further_commands::list_commands(check), style));
     parts.join("\n")
 }
 
@@ -78,15 +64,14 @@ fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Styl
 
 /// Renders the program's likely mistakes, as many as fit on a screen.
 fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
-    let max_shown = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
-    let (shown, more) = check.explanations.split_at(check.explanations.len().min(max_shown));
+    let (shown, more) = check.explanations.split_at(check.explanations.len().min(MAX_EXPLANATIONS));
     // The example is left out here, because the first difference below is also an example.
-    let has_example = check.tables || find_first(check).is_none();
+    let has_example = find_first(check).is_none();
     let without = |explanation: &Explanation| Explanation { example: None, ..explanation.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
     let mut lines = explain::explanation_texts(&shown, style);
     if !more.is_empty() {
-        lines.push(format!("and {} (--tables)", format_count(more.len() as u64, "less likely explanation")));
+        lines.push(format!("and {}", format_count(more.len() as u64, "less likely explanation")));
     }
     render_section("Likely cause", "  ", &lines, style)
 }
@@ -214,59 +199,6 @@ pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, Strin
     };
     let asks = message.ends_with('?');
     (place, message, (!asks).then_some(advice))
-}
-
-fn render_residuals(outcome: &Outcome, style: Style) -> String {
-    let names = ["accumulated position", "accumulated velocity", "maximum position", "maximum velocity"];
-    let judged = outcome.parity.overall != Overall::None;
-    let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
-    table.add_heading(["residual", "value", "tolerance", "used", ""]);
-    for (name, (value, bound)) in names.into_iter().zip(outcome.parity.residuals.with_bounds()) {
-        let verdict = if judged { new_pass_cell(value < bound) } else { "".into() };
-        table.add_row([
-            name.into(),
-            format_g(value).into(),
-            format_g(bound).into(),
-            format_share(value, bound).into(),
-            verdict,
-        ]);
-    }
-    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), new_pass_cell);
-    let wrong = group_digits(outcome.parity.findings.counts.collisions());
-    table.add_row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
-    format!("{}\n{}", style.paint(TextStyle::Strong, "Rules of the original (parity)"), table.render(style))
-}
-
-fn new_pass_cell(yes: bool) -> Cell {
-    if yes { Cell::with_style(TextStyle::Right, "passed") } else { Cell::with_style(TextStyle::Wrong, "failed") }
-}
-
-/// Formats the share of a tolerance that a residual uses, for a table cell.
-fn format_share(value: f64, bound: f64) -> String {
-    let share = value / bound;
-    if share.is_nan() {
-        "-".to_owned()
-    } else if value == 0.0 {
-        "0 %".to_owned()
-    } else if share < 0.0001 {
-        "< 0.01 %".to_owned()
-    } else if share < 1.0 {
-        format!("{:.2} %", 100.0 * share)
-    } else if share < 1000.0 {
-        format!("{share:.2} times")
-    } else {
-        format!("{share:.2e} times")
-    }
-}
-
-fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String {
-    let heading =
-        format!("Findings: {} in {}", group_digits(account.counts.total()), format_count(account.wrong_steps, "step"));
-    let mut text = format!("{}\n{}", style.paint(TextStyle::Strong, &heading), fair::describe_kinds(account, style));
-    if follow > 0 {
-        text += &format!("  among them {}\n", consequences::describe_consequences(follow));
-    }
-    text
 }
 
 /// Returns further remarks about the trace.
