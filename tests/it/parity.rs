@@ -39,7 +39,6 @@ fn judge(
 }
 
 fn told(outcome: &Outcome) -> String {
-    let Outcome { searches: _, ref stop, .. } = *outcome;
     format!(
         "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
         outcome.parity.overall,
@@ -47,7 +46,7 @@ fn told(outcome: &Outcome) -> String {
         outcome.parity.findings.counts,
         outcome.parity.findings.examples,
         outcome.parity.findings.first_divergence,
-        stop,
+        outcome.stop,
         outcome.damage,
         outcome.parity.findings.wrong_steps,
         outcome.trailing_bytes,
@@ -85,7 +84,6 @@ fn verdicts_and_counts_are_those_of_the_original_on_any_number_of_threads() {
             let (other, other_heard) = judge(&scene, &trace, threads, root_search);
             assert_eq!(told(&outcome), told(&other), "{name}: {threads} threads");
             assert_eq!(heard, other_heard, "{name}: {threads} threads");
-            assert_eq!(other.searches.disagreements, 0, "{name}");
         }
         cases += 1;
     }

@@ -9,7 +9,7 @@ fn the_summary_says_what_happened() {
     let run = workspace.run(["simulate", "scene.xml", "--output", "trace.bin"]);
     insta::assert_snapshot!("summary", run.shown());
     assert_eq!(workspace.read("trace.bin"), trace_of(BEAM));
-    let run = workspace.run(["simulate", "scene.xml", "-o", "trace.bin", "--format", "json", "--audit"]);
+    let run = workspace.run(["simulate", "scene.xml", "-o", "trace.bin", "--format", "json"]);
     insta::assert_snapshot!("summary_json", run.shown());
     insta::assert_snapshot!("summary_without_trace", workspace.run(["simulate", "scene.xml"]).shown());
 }

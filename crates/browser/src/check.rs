@@ -68,7 +68,6 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
         explanations: &explanations,
         rules: request.rules,
         steps: &wrong,
-        audit: false,
         other_file_kind: file_kind,
     };
     let mut parts = vec![check.json().into_bytes()];

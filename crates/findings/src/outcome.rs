@@ -2,7 +2,7 @@
 use super::{fair, parity};
 use fosssim_model::{
     assignments::CollisionType,
-    sim::{SearchCounts, StepError},
+    sim::StepError,
     trace::{Malformation, ReadFailure},
 };
 
@@ -51,8 +51,6 @@ pub struct Outcome {
     pub damaged_steps: u32,
     /// Whether bytes follow the last record. The original does not read them.
     pub trailing_bytes: bool,
-    /// The number of the reference's root searches, by kind.
-    pub searches: SearchCounts,
 }
 
 impl Outcome {
@@ -68,7 +66,6 @@ impl Outcome {
             damage: None,
             damaged_steps: 0,
             trailing_bytes: false,
-            searches: SearchCounts::default(),
         }
     }
 

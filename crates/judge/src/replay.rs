@@ -201,7 +201,6 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 stop = self.read_batch(&mut current, SEQUENTIAL_BATCH_STEPS);
             }
         }
-        self.outcome.searches = workers.search_counts();
         self.conclude()
     }
 

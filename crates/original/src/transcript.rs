@@ -260,7 +260,7 @@ mod tests {
     use fosssim_judge::{FindingKind, Overall, parity};
     use fosssim_model::{
         scene::Collision,
-        sim::{Impulse, Pair, PairKind, SearchCounts},
+        sim::{Impulse, Pair, PairKind},
         trace::Malformation,
     };
     use fosssim_num::vector::Vec2;
@@ -293,7 +293,6 @@ mod tests {
             damage: None,
             damaged_steps: 0,
             trailing_bytes: false,
-            searches: SearchCounts::default(),
             fair: None,
         }
     }

@@ -5,10 +5,7 @@ use super::{
     table::{Align, Table},
     view::SCHEMA,
 };
-use fosssim_model::{
-    sim::SearchCounts,
-    trace::{EventCounts, WrittenTrace},
-};
+use fosssim_model::trace::{EventCounts, WrittenTrace};
 use serde_json::json;
 
 /// The results of simulating a scene.
@@ -24,8 +21,6 @@ pub struct SimulationSummary<'a> {
     pub counts: EventCounts,
     /// The size of the trace that was written.
     pub written_trace: WrittenTrace,
-    /// The counts of root searches, if certificates were audited.
-    pub audit_counts: Option<SearchCounts>,
 }
 
 impl SimulationSummary<'_> {
@@ -64,11 +59,6 @@ impl SimulationSummary<'_> {
         table.add_row(["polynomials".into(), group_digits(counts.polynomials).into(), "".into()]);
         let records = format!("in {}", format_count(self.written_trace.records, "record"));
         table.add_row(["bytes".into(), group_digits(self.written_trace.bytes).into(), records.into()]);
-        if let Some(searches) = self.audit_counts {
-            let excluded = format!("{} excluded by a certificate", group_digits(searches.excluded));
-            table.add_row(["root searches".into(), group_digits(searches.searched).into(), excluded.into()]);
-            table.add_row(["disagreements".into(), group_digits(searches.disagreements).into(), "".into()]);
-        }
         let end = self.output.map_or_else(|| "; nothing was kept".to_owned(), |name| format!(" into {name}"));
         let heading = format!("Simulated {}{end}", self.scene);
         format!("{}\n{}", style.paint(TextStyle::Strong, &heading), table.render(style))
@@ -101,12 +91,6 @@ impl SimulationSummary<'_> {
             "polynomials": counts.polynomials,
             "records": self.written_trace.records,
             "bytes": self.written_trace.bytes,
-            "root_searches": self.audit_counts.map(|searches| json!({
-                "calls": searches.calls,
-                "searched": searches.searched,
-                "excluded": searches.excluded,
-                "disagreements": searches.disagreements,
-            })),
         });
         format!("{value:#}\n")
     }

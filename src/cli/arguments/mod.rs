@@ -147,9 +147,6 @@ pub(super) struct SimulateArguments {
     /// The file for the trace, or - for standard output. By default no trace is written.
     #[arg(short, long, value_name = "TRACE")]
     pub(super) output: Option<PathBuf>,
-    /// Search all roots, even if a certificate excludes an impact, and count disagreements.
-    #[arg(long)]
-    pub(super) audit: bool,
     /// The format of the summary.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
@@ -190,9 +187,6 @@ pub(super) struct CheckArguments {
     /// The number of threads, at most eight; the report does not depend on it. One per core by default.
     #[arg(long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(super) threads: Option<NonZeroUsize>,
-    /// Search all roots, even if a certificate excludes an impact, and count disagreements.
-    #[arg(long)]
-    pub(super) audit: bool,
     #[command(flatten)]
     pub(super) quiet: QuietArguments,
 }

@@ -161,7 +161,6 @@ pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: us
         explanations,
         rules,
         steps: &steps,
-        audit: false,
         other_file_kind: None,
     };
     let has_trace = trace_name.is_some();

@@ -177,9 +177,9 @@ fn list_differences(scene: &Scene, trace: &[u8]) -> Option<String> {
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let outcome = &replay::judge(scene, trace, &options, &mut steps);
-    let (audit, looks_like, rules, steps) = (false, None, Rules::Fair, &steps);
+    let (looks_like, rules, steps) = (None, Rules::Fair, &steps);
     let (scene, trace, explanations) = ("small.xml", "small.bin", &[][..]);
-    let check = Check { scene, trace, outcome, explanations, rules, steps, audit, other_file_kind: looks_like };
+    let check = Check { scene, trace, outcome, explanations, rules, steps, other_file_kind: looks_like };
     check.steps_text(Style::Plain)
 }
 

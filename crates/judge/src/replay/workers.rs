@@ -7,7 +7,7 @@ use crate::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{RootSearch, SearchCounts, Simulation},
+    sim::{RootSearch, Simulation},
 };
 use std::{
     sync::atomic::{AtomicU64, AtomicUsize, Ordering},
@@ -23,8 +23,6 @@ const TIME_WITHOUT_THREADS: Duration = Duration::from_millis(20);
 struct Worker {
     simulation: Simulation,
     buffers: TallyBuffers,
-    /// The counts of the reference's root searches.
-    search_counts: SearchCounts,
 }
 
 /// The threads that judge steps, and their data. They are started on demand.
@@ -79,7 +77,7 @@ impl<'a> Workers<'a> {
             if self.judges_individually {
                 simulation.disable_lanes();
             }
-            Worker { simulation, buffers: TallyBuffers::new(self.scene), search_counts: SearchCounts::default() }
+            Worker { simulation, buffers: TallyBuffers::new(self.scene) }
         };
         self.list.resize_with(workers.max(self.list.len()), worker);
     }
@@ -105,13 +103,6 @@ impl<'a> Workers<'a> {
         let Some(pool) = &self.pool else { return };
         let workers = &mut self.list[..];
         pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
-    }
-
-    /// Returns the counts of the reference's root searches.
-    pub(super) fn search_counts(&self) -> SearchCounts {
-        let mut sum = SearchCounts::default();
-        self.list.iter().for_each(|worker| sum += worker.search_counts);
-        sum
     }
 }
 
@@ -163,7 +154,7 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let step = slot.step;
     let StepSlot { before, order, mid, end, result, error, is_beyond_limit: beyond_limit, .. } = slot;
-    let Worker { simulation, buffers, search_counts: searches } = worker;
+    let Worker { simulation, buffers } = worker;
     simulation.state_mut().clone_from(before);
     if let Some(pairs) = simulation.penalty_pairs() {
         pairs.set_order(order);
@@ -174,10 +165,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let mid = layout.has_polynomials.then_some(&*mid);
     (*error, *beyond_limit) = (None, false);
     let mut tally = Tally::new((step, frame), end, mid, shape.logs_impulses, buffers, result);
-    let begin = simulation.search_counts();
-    let end_of_step = simulation.step(&mut tally);
-    *searches += simulation.search_counts() - begin;
-    match end_of_step {
+    match simulation.step(&mut tally) {
         Ok(()) => {
             *beyond_limit = layout.has_polynomials && tally.has_equal_lists();
             tally.finish(simulation.state(), layout.has_impulses, layout.has_polynomials);

@@ -1,5 +1,4 @@
 //! Options and counts of root searches.
-use serde::Serialize;
 
 /// When root searches run, although certificates may make them unnecessary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -14,19 +13,16 @@ pub enum RootSearch {
 }
 
 /// Counts of the root searches so far.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, schemars::JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SearchCounts {
     /// The number of detection calls.
     pub calls: u64,
     /// The number of calls with a root search.
     pub searched: u64,
-    /// The number of calls excluded by a certificate.
-    pub excluded: u64,
     /// The number of calls in which a certificate excluded an impact that the root finder found (audit only). It must
     /// stay zero.
     pub disagreements: u64,
     /// The number of steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
-    #[serde(skip)]
     pub steps: u64,
     /// The additional work of passes with subnormal numbers, beyond the counted work.
     pub subnormal: u64,
@@ -36,32 +32,6 @@ impl SearchCounts {
     /// Returns the work of the calls, in units of a call that a certificate excludes. It is the same on every machine.
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
-    }
-
-    /// Combines the counts of two objects with the function `operation`.
-    fn combine(self, other: Self, operation: fn(u64, u64) -> u64) -> Self {
-        Self {
-            calls: operation(self.calls, other.calls),
-            searched: operation(self.searched, other.searched),
-            excluded: operation(self.excluded, other.excluded),
-            disagreements: operation(self.disagreements, other.disagreements),
-            steps: operation(self.steps, other.steps),
-            subnormal: operation(self.subnormal, other.subnormal),
-        }
-    }
-}
-
-impl std::ops::AddAssign for SearchCounts {
-    fn add_assign(&mut self, other: Self) {
-        *self = self.combine(other, |one, more| one + more);
-    }
-}
-
-/// The difference gives the counts since `before`.
-impl std::ops::Sub for SearchCounts {
-    type Output = Self;
-    fn sub(self, before: Self) -> Self {
-        self.combine(before, |all, earlier| all - earlier)
     }
 }
 

@@ -34,7 +34,6 @@ use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, BookFindings, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
 use fosssim_judge::{MissingResult, ReadFailure, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
-use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use steps::WrongStepView;
@@ -54,8 +53,6 @@ pub struct Check<'a> {
     pub rules: Rules,
     /// The wrong steps, and which of them the report shows one by one.
     pub steps: &'a WrongSteps,
-    /// Whether the report includes the counts of root searches, because certificates were audited.
-    pub audit: bool,
     /// The kind of file that the trace probably is, if it begins like another kind.
     pub other_file_kind: Option<&'a str>,
 }
@@ -211,9 +208,6 @@ view! {
         damage: Option<DamageView> = check.outcome.damage.as_ref().map(DamageView::from),
         /// Whether bytes follow the last record.
         trailing_bytes: bool = check.outcome.trailing_bytes,
-        /// The counts of root searches; null without --audit.
-        #[serde(skip_serializing_if = "Option::is_none")]
-        root_searches: Option<SearchCounts> = check.audit.then_some(check.outcome.searches),
     }
 }
 

@@ -217,14 +217,5 @@ pub(crate) fn list_notes(check: &Check<'_>) -> Vec<String> {
     if outcome.trailing_bytes {
         notes.push("bytes follow the last record; the original never reads them".to_owned());
     }
-    if check.audit {
-        let searches = outcome.searches;
-        let (calls, searched) = (group_digits(searches.calls), group_digits(searches.searched));
-        let (excluded, disagreements) = (group_digits(searches.excluded), group_digits(searches.disagreements));
-        notes.push(format!(
-            "audit: {calls} detection calls, {searched} root searches, {excluded} excluded by a certificate, \
-             {disagreements} disagreements"
-        ));
-    }
     notes
 }

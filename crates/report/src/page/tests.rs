@@ -40,7 +40,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
 fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanations: &'a [Explanation]) -> Check<'a> {
     static NONE: std::sync::LazyLock<WrongSteps> = std::sync::LazyLock::new(|| WrongSteps::new(StepChoice::None));
     let (rules, steps) = (Rules::Both, &*NONE);
-    Check { scene, trace, outcome, explanations, rules, steps, audit: false, other_file_kind: None }
+    Check { scene, trace, outcome, explanations, rules, steps, other_file_kind: None }
 }
 
 fn text_of(scene: &Scene, trace: &[u8]) -> String {
@@ -218,7 +218,6 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         explanations: &explanations,
         rules: Rules::Fair,
         steps: &steps,
-        audit: false,
         other_file_kind: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), mistake_run: Some(&what_if), hints, has_trace: false };

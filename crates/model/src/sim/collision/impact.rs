@@ -21,11 +21,8 @@ pub(super) fn time_of_impact(
 ) -> Result<ImpactTime, StepError> {
     counts.calls += 1;
     let excluded = search != RootSearch::Always && excludes_unit_interval(polynomials);
-    if excluded {
-        counts.excluded += 1;
-        if search == RootSearch::OnDemand {
-            return Ok(ImpactTime::Excluded);
-        }
+    if excluded && search == RootSearch::OnDemand {
+        return Ok(ImpactTime::Excluded);
     }
     counts.searched += 1;
     let time =

@@ -50,7 +50,6 @@ impl LaneWork for HitSearch<'_> {
                 used_bytes: used, polynomial_count: polynomials, excluded, largest, result: found, ..
             } = output;
             self.counts.calls += excluded;
-            self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
                 bytes.count_added(used, polynomials);
                 bytes.raise_max_modulus(largest.max(self.group.largest_modulus));
