@@ -19,8 +19,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     let completion = queue::complete(transaction, lease).await?;
     match completion {
         Completion::Done => {
-            let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
-            health::record_result(transaction, &about.worker).await?;
+            write_result(transaction, lease.job, lease.attempt, outcome).await?;
         }
         Completion::Late => log_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
         Completion::Repeated => {}
