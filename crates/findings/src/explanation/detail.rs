@@ -68,6 +68,17 @@ pub enum PolynomialDetail {
     FirstOnly(usize),
     /// Every displacement is multiplied by this factor.
     Displacements(#[serde(with = "fosssim_num::number_serde")] f64),
+    /// The radius that a particle and a half-plane have, or the sum of the radii of two bodies, is another one.
+    Reach {
+        /// The kind of pair.
+        kind: PairKind,
+        /// The radius or sum in the program.
+        #[serde(with = "fosssim_num::number_serde")]
+        used: f64,
+        /// The right radius or sum.
+        #[serde(with = "fosssim_num::number_serde")]
+        expected: f64,
+    },
     /// The formula is changed in a way that has a name.
     Named {
         /// The key of the change in the assignment's data.

@@ -30,7 +30,7 @@ impl Guess {
 
     /// Returns whether the guess can be the same mistake in several polynomials.
     pub const fn is_general(&self) -> bool {
-        matches!(self, Self::List(_) | Self::Named(_))
+        matches!(self, Self::List(_) | Self::Named(_) | Self::Quantity(QuantityGuess::Radius))
     }
 
     /// Returns the key of an explanation with this guess.
@@ -105,6 +105,8 @@ fosssim_num::closed_set! {
         Zero = "letter-factor", "A quantity of the formula is zero";
         /// The quantity is multiplied by a factor.
         Factor = "letter-factor", "A quantity of the formula has a wrong factor";
+        /// The radii are wrong.
+        Radius = "other-radius", "The radii in the formula have wrong values";
         /// Instead of the quantity, another one is used that is not in the formula.
         Other = "letter", "Another quantity is used instead of a dot product of the formula";
     }

@@ -108,6 +108,7 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::LastOnly(1),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(1.0 / 3.0),
+        PolynomialDetail::Reach { kind: PairKind::ParticleEdge, used: 0.1, expected: 1e-320 },
         PolynomialDetail::Named { key: "end-positions".into(), of_edges: true },
         PolynomialDetail::Named { key: "one-unscaled".into(), of_edges: false },
         stands(Substitute::Scaled(-0.0)),

@@ -3,15 +3,16 @@
 //! The input are samples: the inputs of a detection, and the logged polynomials. A guess is rated by the number of
 //! samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole list
 //! of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
-//! separately), misunderstandings with their own formula, one letter of a formula (`slips`), and the terms of single
-//! coefficients (`terms`: sparse least squares over the products of dot products, with weights that are multiples of
-//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may be the one
-//! that is supplied, or the mathematically right one.
+//! separately), misunderstandings with their own formula, one letter of a formula (`slips`), any other radius
+//! (`radius`), and the terms of single coefficients (`terms`: sparse least squares over the products of dot products,
+//! with weights that are multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor
+//! each. The quintic may be the one that is supplied, or the mathematically right one.
 //!
 //! The module reads no trace, judges nothing and never uses decisions or responses.
 mod compare;
 mod dictionary;
 mod example;
+mod radius;
 mod slips;
 mod sparse;
 mod structure;
@@ -24,7 +25,7 @@ pub use super::sampling::Sample;
 
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
-    guess::{CoefficientGuess, Guess, digest},
+    guess::{CoefficientGuess, Guess, QuantityGuess, digest},
     sampling::{ROUND_OFF, polynomial_matches},
     topic::{ExplanationTopic, PolynomialEvidence},
 };
@@ -213,6 +214,7 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::collect_candidates(study);
     all.extend(collect_misunderstandings(study));
     all.extend(slips::collect_candidates(study));
+    all.extend(radius::collect_candidates(study));
     all.extend(terms::collect_candidates(study));
     // A guess that reproduces no more than the right formula is not an explanation.
     let plain = study.count_reproduced();
@@ -283,7 +285,9 @@ fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen_keys: Vec<&str> = Vec::new();
-        for candidate in suspect.complete_guesses().filter(|candidate| candidate.guess.is_general()) {
+        // Wrong radii of several kinds of pairs are rather mistakes with names of their own.
+        let is_shared = |guess: &Guess| guess.is_general() && *guess != Guess::Quantity(QuantityGuess::Radius);
+        for candidate in suspect.complete_guesses().filter(|candidate| is_shared(&candidate.guess)) {
             let key = candidate.guess.key();
             if !seen_keys.contains(&key) {
                 seen_keys.push(key);

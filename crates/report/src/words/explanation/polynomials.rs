@@ -1,7 +1,9 @@
 //! Describes wrong polynomials.
 use super::{capitalize, letters};
+use crate::number::format_short;
 use fosssim_judge::PowerText;
 use fosssim_mistakes::diagnose::{Guess, PolynomialDetail, PolynomialEvidence, Substitute, Weight};
+use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
 /// Describes the fault of wrong polynomials.
@@ -68,6 +70,10 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),
         PolynomialDetail::FirstOnly(length) => format!("only the first {length} coefficients are there"),
         PolynomialDetail::Displacements(factor) => format!("every displacement is multiplied by {factor}"),
+        PolynomialDetail::Reach { kind, used, expected } => {
+            let name = if *kind == PairKind::ParticleHalfPlane { "the radius" } else { "the sum of the radii" };
+            format!("{name} is {used} instead of {}", format_short(*expected))
+        }
         PolynomialDetail::Named { key, of_edges } => {
             letters::name_radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
         }

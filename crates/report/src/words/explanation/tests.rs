@@ -195,6 +195,8 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::LastOnly(2),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(100.0),
+        PolynomialDetail::Reach { kind: PairKind::ParticleEdge, used: 0.25, expected: 0.45 },
+        PolynomialDetail::Reach { kind: PairKind::ParticleHalfPlane, used: 0.0, expected: 0.1 },
         PolynomialDetail::Named { key: "first-radius-only".into(), of_edges: true },
         PolynomialDetail::Named { key: "first-radius-only".into(), of_edges: false },
         PolynomialDetail::Named { key: "radius-unscaled".into(), of_edges: false },

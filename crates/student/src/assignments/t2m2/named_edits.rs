@@ -89,6 +89,16 @@ named_edits! {
         OtherInputs(|inputs| inputs.x[0] = inputs.x[0] + inputs.d[0])
         => "The first particle's position is the one at the end of the step"
         => "x1 is the position at the end of the step";
+    SECOND_PARTICLE_AT_END "second-particle-at-end" [PP] 4.6:
+        OtherInputs(|inputs| inputs.x[1] = inputs.x[1] + inputs.d[1])
+        => "The second particle's position is the one at the end of the step"
+        => "x2 is the position at the end of the step";
+    FIRST_END_AT_END "first-end-at-end" [PE] 4.6: OtherInputs(|inputs| inputs.x[1] = inputs.x[1] + inputs.d[1])
+        => "The position of the edge's first endpoint is the one at the end of the step"
+        => "x2 is the position at the end of the step";
+    SECOND_END_AT_END "second-end-at-end" [PE] 4.6: OtherInputs(|inputs| inputs.x[2] = inputs.x[2] + inputs.d[2])
+        => "The position of the edge's second endpoint is the one at the end of the step"
+        => "x3 is the position at the end of the step";
     RADII_SQUARED_APART "radii-squared-apart" [PP, PE] 2.6:
         OtherInputs(|inputs| inputs.square = square(inputs.radii[0]) + square(inputs.radii[1]))
         => "The radii are squared separately" => "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";

@@ -229,7 +229,7 @@ fn odd_weights_from_few_samples_are_not_named() {
         lists
     };
     let few = samples(PairKind::ParticleParticle, 3, particle_lists).into_iter();
-    let few: Vec<Sample> = (few.zip([[2.0, 3.0], [3.0, 2.0], [3.0, 3.0]]))
+    let few: Vec<Sample> = (few.zip([[2.0, 3.0], [3.0, 4.0], [3.0, 3.0]]))
         .map(|(sample, radii)| {
             let PairMotion::Particles { centers, .. } = sample.motion else { panic!("no particles") };
             let motion = PairMotion::Particles { centers, radii };

@@ -1,5 +1,6 @@
 //! Explains students with one mistake each on random motions. The explanation must name it and reproduce everything.
 mod catalogue;
+mod radius;
 
 use super::*;
 use crate::diagnose::{CoefficientGuess, ExamplePlace, Substitute, Weight};
@@ -176,8 +177,7 @@ fn only(
     let [one] = &found[..] else { panic!("{key}: {found:#?}") };
     assert_eq!(one.key, key, "{one:#?}");
     assert_eq!(one.reproduced, one.samples, "{one:#?}");
-    assert!(has(one, is_told), "{key}: {one:#?}");
-    assert!(one.example.is_some());
+    assert!(has(one, is_told) && one.example.is_some(), "{key}: {one:#?}");
     one.clone()
 }
 
