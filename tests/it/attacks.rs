@@ -62,7 +62,7 @@ const CROWDS: [&str; 9] = ["busy", "fork", "heap", "memory", "processor", "short
 const CALLS: [&str; 6] = ["commands", "execute", "kernel", "leak", "lock", "write_modes"];
 
 fn assert_all_held(table: &PromiseTable, at_least: usize) {
-    let broken: Vec<_> = table.broken().map(|promise| &promise.attack).collect();
+    let broken: Vec<_> = table.broken_promises().map(|promise| &promise.attack).collect();
     assert!(broken.is_empty(), "broken promises: {broken:?}");
     let fault = |why: &str| why.contains("test itself") || why.contains("compile");
     let faults =

@@ -5,8 +5,8 @@ use fosssim_oracle::{
     scene::original,
     sim::{RootSearch, Simulation, State},
     trace::{
-        Frame, Layout, LenientFrame, LenientReader, LoggedImpulse, Malformation, ReadFailure, Reader, RecordList,
-        Recorder, TraceError, Writer,
+        Frame, Layout, LenientFrame, LenientReader, LoggedImpulse, ReadFailure, Reader, RecordList, Recorder,
+        TraceError, TraceFormatError, Writer,
     },
 };
 use proptest::test_runner::RngSeed;
@@ -179,21 +179,25 @@ fn every_cut_of_a_small_trace_is_named() {
         let begin = if record == 0 { 0 } else { 40 + 116 * (record - 1) };
         let inside = cut as u64 - begin;
         let (offset, what) = match (record, inside) {
-            (0, 0) => (0, Malformation::Empty),
-            (records, 0) => (0, Malformation::TooFewRecords { records, expected: 3 }),
-            (_, 1..32) => (0, Malformation::State { needs: 32, left: inside }),
-            (_, 32..36) => (32, Malformation::CountCut { list: RecordList::Impulses, left: inside - 32 }),
-            (0, _) => (36, Malformation::CountCut { list: RecordList::Polynomials, left: inside - 36 }),
+            (0, 0) => (0, TraceFormatError::Empty),
+            (records, 0) => (0, TraceFormatError::TooFewRecords { records, expected: 3 }),
+            (_, 1..32) => (0, TraceFormatError::State { needs: 32, left: inside }),
+            (_, 32..36) => (32, TraceFormatError::CountCut { list: RecordList::Impulses, left: inside - 32 }),
+            (0, _) => (36, TraceFormatError::CountCut { list: RecordList::Polynomials, left: inside - 36 }),
             (_, 36..72) => {
-                let what =
-                    Malformation::CountBeyondEnd { list: RecordList::Impulses, count: 1, needs: 36, left: inside - 36 };
+                let what = TraceFormatError::CountBeyondEnd {
+                    list: RecordList::Impulses,
+                    count: 1,
+                    needs: 36,
+                    left: inside - 36,
+                };
                 (32, what)
             }
-            (_, 72..76) => (72, Malformation::CountCut { list: RecordList::Polynomials, left: inside - 72 }),
-            (_, 76..80) => (76, Malformation::PolynomialCut { polynomial: 0, count: 2 }),
-            (_, 80..104) => (76, Malformation::SizeBeyondEnd { polynomial: 0, size: 3, left: inside - 80 }),
-            (_, 104..108) => (104, Malformation::PolynomialCut { polynomial: 1, count: 2 }),
-            _ => (104, Malformation::SizeBeyondEnd { polynomial: 1, size: 1, left: inside - 108 }),
+            (_, 72..76) => (72, TraceFormatError::CountCut { list: RecordList::Polynomials, left: inside - 72 }),
+            (_, 76..80) => (76, TraceFormatError::PolynomialCut { polynomial: 0, count: 2 }),
+            (_, 80..104) => (76, TraceFormatError::SizeBeyondEnd { polynomial: 0, size: 3, left: inside - 80 }),
+            (_, 104..108) => (104, TraceFormatError::PolynomialCut { polynomial: 1, count: 2 }),
+            _ => (104, TraceFormatError::SizeBeyondEnd { polynomial: 1, size: 1, left: inside - 108 }),
         };
         let step = u32::from(record > 0);
         assert_eq!(error, TraceError { offset: begin + offset, frame: record, step, what }, "cut at {cut}");
@@ -212,8 +216,8 @@ fn oddities_are_noted_and_read_over() {
     while reader.next(&mut frame).unwrap() {
         notes.extend(reader.notes().iter().map(|note| (note.offset, note.what.clone())));
     }
-    let outside = Malformation::IndexOutOfRange { impulse: 0, object: "particle".into(), index: 9, count: 1 };
-    assert_eq!(notes, [(76, Malformation::UnknownKind { impulse: 0, kind: 7 }), (192, outside)]);
+    let outside = TraceFormatError::IndexOutOfRange { impulse: 0, object: "particle".into(), index: 9, count: 1 };
+    assert_eq!(notes, [(76, TraceFormatError::UnknownKind { impulse: 0, kind: 7 }), (192, outside)]);
 }
 
 #[test]
@@ -222,7 +226,7 @@ fn negative_counts_are_rejected() {
     bytes[40 + 35] = 0xff;
     let error = rewrite(Reader::from_slice(&bytes, layout)).unwrap_err();
     let count = i32::from_le_bytes([1, 0, 0, 0xff]);
-    assert_eq!((error.offset, error.what), (72, Malformation::NegativeCount { list: RecordList::Impulses, count }));
+    assert_eq!((error.offset, error.what), (72, TraceFormatError::NegativeCount { list: RecordList::Impulses, count }));
 }
 
 /// Returns the example of trace-format.md 3 with one of the collision types.

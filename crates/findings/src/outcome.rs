@@ -3,7 +3,7 @@ use super::{fair, parity};
 use fosssim_model::{
     assignments::CollisionType,
     sim::StepError,
-    trace::{Malformation, ReadFailure},
+    trace::{ReadFailure, TraceFormatError},
 };
 
 /// The reason why judging stopped before the end of the trace.
@@ -20,7 +20,7 @@ pub enum Stop {
         /// The position of the damage in the file, in bytes.
         offset: u64,
         /// The kind of damage.
-        what: Malformation,
+        what: TraceFormatError,
     },
     /// Judging needed more work than is allowed, or a step has no result by the original's rules.
     Step(StepError),

@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_model::{
     sim::StepError,
-    trace::{Malformation, ReadFailure},
+    trace::{ReadFailure, TraceFormatError},
 };
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
@@ -185,7 +185,7 @@ pub enum BadTrace {
         /// The position of the damage in the file, in bytes.
         offset: u64,
         /// The damage, as the trace's reader reports it.
-        damage: Malformation,
+        damage: TraceFormatError,
     },
     /// The trace contains the states of all steps, but no collisions.
     StatesOnly,

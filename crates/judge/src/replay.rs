@@ -24,7 +24,9 @@ use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
     sim::{RootSearch, Simulation, State, StepError, SweepOrder},
-    trace::{Layout, LenientFrame, LenientReader, LoggedImpulse, Malformation, ReadFailure, TraceError, record_memory},
+    trace::{
+        Layout, LenientFrame, LenientReader, LoggedImpulse, ReadFailure, TraceError, TraceFormatError, record_memory,
+    },
 };
 use std::{io::Read, sync::Mutex};
 use workers::Workers;
@@ -439,7 +441,7 @@ fn stop_beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
         step: slot.step,
         cause: ReadFailure::Limit,
         offset: slot.last_record,
-        what: Malformation::BeyondKept { logged, kept },
+        what: TraceFormatError::BeyondKept { logged, kept },
     }
 }
 

@@ -261,7 +261,7 @@ mod tests {
     use fosssim_model::{
         scene::Collision,
         sim::{Impulse, Pair, PairKind},
-        trace::Malformation,
+        trace::TraceFormatError,
     };
     use fosssim_num::vector::Vec2;
 
@@ -382,7 +382,7 @@ mod tests {
     fn an_unreadable_first_record_leaves_no_banner() {
         let scene = scene(3);
         let cause = ReadFailure::State;
-        let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, what: Malformation::Empty };
+        let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, what: TraceFormatError::Empty };
         let text = after_heading(&scene, Task::Grade(b"e"), |transcript| {
             transcript.print_end(&outcome(Overall::None, Some(stop)));
         });

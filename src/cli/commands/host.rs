@@ -165,7 +165,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         };
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }
-    let broken = table.broken().count();
+    let broken = table.broken_promises().count();
     let kept = format_count(table.count_kept() as u64, "promise");
     let untested = table.promises.len() - table.count_kept() - broken;
     let _ = writeln!(text, "\n{kept} kept, {broken} broken, {untested} not tested here");

@@ -114,7 +114,7 @@ impl Pages {
 }
 
 /// The sentence above the card of a trace that was compared with a recording.
-const NOTE: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
+const RECORDING_NOTE: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
                         differs. The steps below are judged from the trace's own state before each step, to show \
                         which ones are wrong by themselves, and which only follow from others.";
 
@@ -133,7 +133,7 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
         let Ok(ExaminedTrace { outcome, rulings, .. }) = examined else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw_card(&own, false)
-            .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(NOTE).to_stored()));
+            .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(RECORDING_NOTE).to_stored()));
     }
     // A failure while drawing must not cost points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {

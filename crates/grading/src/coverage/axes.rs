@@ -26,15 +26,15 @@ macro_rules! axis {
     };
 }
 
-axis!(Found, "found in": Continuous = "the pass of continuous-time", First = "the first impulse round",
+axis!(DetectionPass, "found in": Continuous = "the pass of continuous-time", First = "the first impulse round",
     Later = "a later impulse round", Zones = "the first pass for zones", Grown = "a later pass for zones");
-axis!(When, "time": Start = "start of the step", Within = "within the step", End = "end of the step");
+axis!(ContactTime, "time": Start = "start of the step", Within = "within the step", End = "end of the step");
 axis!(Restitution, "COR": Zero = "0", Between = "between", One = "1");
 axis!(Integrator, "integrator": Explicit = "explicit", ForwardBackward = "forward-backward", Implicit = "implicit",
     Linearized = "linearized implicit");
-axis!(Likeness, "masses": Equal = "equal", Unequal = "unequal");
+axis!(MassRatio, "masses": Equal = "equal", Unequal = "unequal");
 axis!(Radii, "radii": Equal = "equal", Unequal = "unequal");
-axis!(Company, "contacts of its bodies": Alone = "this one", Several = "several in one pass");
+axis!(ContactCount, "contacts of its bodies": Alone = "this one", Several = "several in one pass");
 axis!(FixedOfTwo, "fixed": None = "none", First = "the first", Second = "the second", Both = "both");
 axis!(FixedOfThree, "fixed": None = "none", Particle = "the particle", First = "the first end", Second = "the second \
     end",
@@ -46,9 +46,9 @@ axis!(EdgeMotion, "edge's motion": Still = "none", Shifted = "shifted", Turned =
 axis!(Side, "side": Front = "in front", Behind = "behind");
 axis!(Normal, "normal": Unit = "of length 1", Other = "of another length");
 axis!(Size, "particles": One = "1", Two = "2", Three = "3", More = "4 or more");
-axis!(Held, "held by": Nothing = "nothing", Fixed = "a fixed particle", HalfPlane = "a half-plane", Both = "both");
+axis!(ZoneAnchor, "held by": Nothing = "nothing", Fixed = "a fixed particle", HalfPlane = "a half-plane", Both = "both");
 axis!(Motion, "motion": Rests = "rests", Shifts = "shifts only", Turns = "turns");
-axis!(Age, "zone is": First = "of the first round", New = "new in a later round", Grown = "grown", Same = "as before");
+axis!(ZoneOrigin, "zone is": First = "of the first round", New = "new in a later round", Grown = "grown", Same = "as before");
 axis!(Position, "place in the list": Only = "the only one", First = "first", Between = "in between", Last = "last");
 axis!(ZoneEdge, "edge in it": None = "none", Next = "j = i + 1", Previous = "j = i - 1", Apart = "|j - i| > 1");
 axis!(Links, "contacts": One = "one", Several = "several");
@@ -60,7 +60,7 @@ axis!(LoopEnd, "impulses": Nothing = "nothing collides", Within = "end before th
     JustEnough = "the last round finds nothing", RunOut = "the limit is reached", NotAllowed = "the limit is 0");
 axis!(ZoneCount, "zones": None = "none", One = "one", Several = "several");
 axis!(Rounds, "rounds of zones": None = "none", One = "1", Two = "2", More = "3 or more");
-axis!(Why, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second \
+axis!(NoContactReason, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second \
     end",
     Late = "too late", Never = "they never meet");
 axis!(Kind, "pair": Particles = "two particles", Edge = "a particle and an edge",

@@ -2,7 +2,8 @@
 use super::{
     Coverage,
     axes::{
-        Age, Company, Ends, Forces, Held, Hits, Links, LoopEnd, Penalty, Position, Rounds, Size, ZoneCount, ZoneEdge,
+        ContactCount, Ends, Forces, Hits, Links, LoopEnd, Penalty, Position, Rounds, Size, ZoneAnchor, ZoneCount,
+        ZoneEdge, ZoneOrigin,
     },
     events,
     families::{
@@ -52,7 +53,7 @@ impl<'a> CoverageObserver<'a> {
         Self { scene, coverage, stage: Stage::Simple, step: StepEvents::default() }
     }
 
-    fn contact_event(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Event {
+    fn contact_event(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: ContactCount) -> Event {
         let scene = self.scene;
         let (found, when) = (events::stage_value(self.stage), events::time_range(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
@@ -101,10 +102,10 @@ impl<'a> CoverageObserver<'a> {
         let scene = self.scene;
         let is_known = |zone: &&EarlierZone| zone.0.iter().any(|particle| particles.contains(particle));
         let age = match self.step.previous_zones.iter().find(is_known) {
-            _ if self.step.rounds == 1 => Age::First,
-            None => Age::New,
-            Some((same, flag)) if same == particles && *flag == half_plane => Age::Same,
-            Some(_) => Age::Grown,
+            _ if self.step.rounds == 1 => ZoneOrigin::First,
+            None => ZoneOrigin::New,
+            Some((same, flag)) if same == particles && *flag == half_plane => ZoneOrigin::Same,
+            Some(_) => ZoneOrigin::Grown,
         };
         let index = self.step.zones.iter().position(|zone| zone.0 == particles).unwrap_or(0);
         let position = match (index, self.step.zones.len()) {
@@ -120,10 +121,10 @@ impl<'a> CoverageObserver<'a> {
             _ => Size::More,
         };
         let held = match (particles.iter().any(|&particle| scene.particles[particle].fixed), half_plane) {
-            (false, false) => Held::Nothing,
-            (true, false) => Held::Fixed,
-            (false, true) => Held::HalfPlane,
-            (true, true) => Held::Both,
+            (false, false) => ZoneAnchor::Nothing,
+            (true, false) => ZoneAnchor::Fixed,
+            (false, true) => ZoneAnchor::HalfPlane,
+            (true, true) => ZoneAnchor::Both,
         };
         let contacts = || self.step.zone_contacts.iter().filter(|pair| particles.contains(&(pair.first as usize)));
         let links = if contacts().count() > 1 { Links::Several } else { Links::One };
@@ -210,7 +211,7 @@ impl Observer for CoverageObserver<'_> {
                     self.step.zone_contacts.insert(detection.pair);
                 }
                 let contact_with = |company| self.contact_event(detection, &bodies, time, company);
-                let both = [Company::Alone, Company::Several].map(contact_with);
+                let both = [ContactCount::Alone, ContactCount::Several].map(contact_with);
                 self.step.contacts.push((bodies, both));
             }
             Decision::Miss { .. } => {

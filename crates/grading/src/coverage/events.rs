@@ -1,8 +1,8 @@
 //! Computes the properties of two kinds of events that an observer sees: a detection call, and a zone before it is
 //! moved.
 use super::axes::{
-    EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion, Normal,
-    Place, Radii, Restitution, Side, SomeFixed, When, Why,
+    ContactTime, DetectionPass, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Integrator, Kind, Limit,
+    MassRatio, Motion, NoContactReason, Normal, Place, Radii, Restitution, Side, SomeFixed,
 };
 use fosssim_model::{
     scene::{self, Collision, Edge, Scene},
@@ -17,21 +17,21 @@ use fosssim_num::{
 const NEAR_END: f64 = 0.05;
 
 /// Returns the stage in which a pair is checked, as a value of a property.
-pub(super) const fn stage_value(stage: Stage) -> Found {
+pub(super) const fn stage_value(stage: Stage) -> DetectionPass {
     match stage {
-        Stage::Simple | Stage::ContinuousTime => Found::Continuous,
-        Stage::Impulses { round: 0 } => Found::First,
-        Stage::Impulses { .. } => Found::Later,
-        Stage::Geometric { round: 0 } => Found::Zones,
-        Stage::Geometric { .. } => Found::Grown,
+        Stage::Simple | Stage::ContinuousTime => DetectionPass::Continuous,
+        Stage::Impulses { round: 0 } => DetectionPass::First,
+        Stage::Impulses { .. } => DetectionPass::Later,
+        Stage::Geometric { round: 0 } => DetectionPass::Zones,
+        Stage::Geometric { .. } => DetectionPass::Grown,
     }
 }
 
-pub(super) fn time_range(time: f64) -> When {
+pub(super) fn time_range(time: f64) -> ContactTime {
     match time {
-        0.0 => When::Start,
-        1.0 => When::End,
-        _ => When::Within,
+        0.0 => ContactTime::Start,
+        1.0 => ContactTime::End,
+        _ => ContactTime::Within,
     }
 }
 
@@ -109,9 +109,9 @@ pub(super) fn any_fixed(scene: &Scene, bodies: &[usize]) -> SomeFixed {
     }
 }
 
-pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
+pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> MassRatio {
     let first = scene.particles[bodies[0]].mass;
-    if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
+    if bodies.iter().all(|&body| scene.particles[body].mass == first) { MassRatio::Equal } else { MassRatio::Unequal }
 }
 
 /// Compares the radii of a pair, and returns whether they are equal. They are those of two particles, or those of a
@@ -182,7 +182,7 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
 
 /// Returns why a pair does not collide. It follows from the signs of the pair's polynomials at a few times of this step
 /// and the next.
-pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
+pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> NoContactReason {
     const SAMPLE_TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
@@ -193,11 +193,11 @@ pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Wh
     let approach = polynomials.len().saturating_sub(1);
     let is_edge = kind == PairKind::ParticleEdge;
     match () {
-        () if holds_but(approach, 0..=SAMPLE_TIMES) => Why::Parting,
-        () if is_edge && holds_but(1, 0..=SAMPLE_TIMES) => Why::BesideFirst,
-        () if is_edge && holds_but(2, 0..=SAMPLE_TIMES) => Why::BesideSecond,
-        () if holds_but(polynomials.len(), SAMPLE_TIMES + 1..=2 * SAMPLE_TIMES) => Why::Late,
-        () => Why::Never,
+        () if holds_but(approach, 0..=SAMPLE_TIMES) => NoContactReason::Parting,
+        () if is_edge && holds_but(1, 0..=SAMPLE_TIMES) => NoContactReason::BesideFirst,
+        () if is_edge && holds_but(2, 0..=SAMPLE_TIMES) => NoContactReason::BesideSecond,
+        () if holds_but(polynomials.len(), SAMPLE_TIMES + 1..=2 * SAMPLE_TIMES) => NoContactReason::Late,
+        () => NoContactReason::Never,
     }
 }
 

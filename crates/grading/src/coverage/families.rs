@@ -1,8 +1,8 @@
 //! The kinds of events in a step that are counted. Each has properties, and pairs of values that exclude each other.
 use super::axes::{
-    Age, Axis, AxisValue, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits,
-    Integrator, Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution,
-    Rounds, Side, Size, SomeFixed, When, Why, ZoneCount, ZoneEdge,
+    Axis, AxisValue, ContactCount, ContactTime, DetectionPass, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne,
+    Forces, Hits, Integrator, Kind, Limit, Links, LoopEnd, MassRatio, Motion, NoContactReason, Normal, Penalty, Place,
+    Position, Radii, Restitution, Rounds, Side, Size, SomeFixed, ZoneAnchor, ZoneCount, ZoneEdge, ZoneOrigin,
 };
 
 /// A kind of event and its properties. Scenes should contain every pair of values of any two properties.
@@ -47,74 +47,74 @@ macro_rules! never {
 }
 
 family!(ParticleContact, 0, "two particles collide" {
-    found: Found,
-    when: When,
+    found: DetectionPass,
+    when: ContactTime,
     fixed: FixedOfTwo,
-    masses: Likeness,
+    masses: MassRatio,
     radii: Radii,
-    company: Company,
+    company: ContactCount,
     restitution: Restitution,
     integrator: Integrator,
 } never never![]);
 
 family!(EdgeContact, 1, "a particle and an edge collide" {
-    found: Found,
-    when: When,
+    found: DetectionPass,
+    when: ContactTime,
     fixed: FixedOfThree,
     place: Place,
     ends: Ends,
     motion: EdgeMotion,
-    masses: Likeness,
+    masses: MassRatio,
     radii: Radii,
-    company: Company,
+    company: ContactCount,
     restitution: Restitution,
     integrator: Integrator,
 } never never![]);
 
 family!(HalfPlaneContact, 2, "a particle and a half-plane collide" {
-    found: Found,
-    when: When,
+    found: DetectionPass,
+    when: ContactTime,
     fixed: FixedOne,
     side: Side,
     normal: Normal,
-    company: Company,
+    company: ContactCount,
     restitution: Restitution,
     integrator: Integrator,
 } never never![]);
 
 family!(NoContact, 3, "a pair does not collide" {
     kind: Kind,
-    why: Why,
-    found: Found,
+    why: NoContactReason,
+    found: DetectionPass,
     fixed: SomeFixed,
 } never never![
     // Only edges have ends that a particle can miss. A pair with a half-plane has only one particle, which is either
     // fixed or not.
-    Kind::Particles with Why::{BesideFirst, BesideSecond},
-    Kind::HalfPlane with Why::{BesideFirst, BesideSecond},
+    Kind::Particles with NoContactReason::{BesideFirst, BesideSecond},
+    Kind::HalfPlane with NoContactReason::{BesideFirst, BesideSecond},
     Kind::HalfPlane with SomeFixed::{Some},
 ]);
 
 family!(MovedZone, 4, "the failsafe moves a zone" {
     size: Size,
-    held: Held,
+    held: ZoneAnchor,
     motion: Motion,
-    age: Age,
+    age: ZoneOrigin,
     position: Position,
     edge: ZoneEdge,
     links: Links,
-    masses: Likeness,
+    masses: MassRatio,
     radii: Radii,
     limit: Limit,
     integrator: Integrator,
 } never never![
     // A zone with a single body is one that hits a half-plane. It cannot rotate, has not grown, has no edge, and has no
     // other body to differ from.
-    Size::One with Held::{Nothing, Fixed},
+    Size::One with ZoneAnchor::{Nothing, Fixed},
     Size::One with Motion::{Turns},
-    Size::One with Age::{Grown},
+    Size::One with ZoneOrigin::{Grown},
     Size::One with ZoneEdge::{Next, Previous, Apart},
-    Size::One with Likeness::{Unequal},
+    Size::One with MassRatio::{Unequal},
     Size::One with Radii::{Unequal},
     // An edge and a particle are three bodies. A contact joins at most three bodies, and a half-plane has a contact of
     // its own.

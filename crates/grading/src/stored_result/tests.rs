@@ -16,7 +16,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
-    trace::{LoggedImpulse, Malformation, RecordList},
+    trace::{LoggedImpulse, RecordList, TraceFormatError},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use fosssim_sandbox::{RunEnd, StartProblem};
@@ -120,8 +120,12 @@ fn wrong() -> SceneResult {
         ..account.clone()
     };
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
-    let damage =
-        Damage { frame: 1, step: 2, offset: 3, what: Malformation::CountCut { list: RecordList::Impulses, left: 3 } };
+    let damage = Damage {
+        frame: 1,
+        step: 2,
+        offset: 3,
+        what: TraceFormatError::CountCut { list: RecordList::Impulses, left: 3 },
+    };
     let why = Reason::Wrong(WrongTrace::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
         ended: Some(RunEnd::Exited(0)),
@@ -171,7 +175,7 @@ fn every_reason_and_every_end_reads_back() {
         step: 5,
         cause,
         offset: 77,
-        damage: Malformation::CountCut { list: RecordList::Impulses, left: 3 },
+        damage: TraceFormatError::CountCut { list: RecordList::Impulses, left: 3 },
     };
     let errors = [
         StepError::RootSearch { step: 1, pair: pair(PairKind::ParticleEdge) },

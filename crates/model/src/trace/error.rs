@@ -17,11 +17,11 @@ pub struct TraceError {
     /// The byte offset from the beginning of the trace at which the wrong or missing value begins.
     pub offset: u64,
     /// The fault, without its position.
-    pub what: Malformation,
+    pub what: TraceFormatError,
 }
 
 impl TraceError {
-    pub(super) fn new(layout: Layout, frame: u64, offset: u64, what: Malformation) -> Self {
+    pub(super) fn new(layout: Layout, frame: u64, offset: u64, what: TraceFormatError) -> Self {
         Self { frame, step: layout.step_of_record(frame), offset, what }
     }
 }
@@ -64,7 +64,7 @@ impl fmt::Display for RecordList {
 
 /// The ways in which a trace can be malformed (trace-format.md 1, 2).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
-pub enum Malformation {
+pub enum TraceFormatError {
     /// The trace is empty.
     #[error("the trace is empty; was the program started with -o, and did it run?")]
     Empty,
@@ -208,7 +208,7 @@ pub enum Malformation {
     },
 }
 
-impl Malformation {
+impl TraceFormatError {
     /// Returns the fault of missing or incomplete positions and velocities after `records` records, of which `whole`
     /// were complete. `left` is the number of remaining bytes.
     pub(super) fn missing_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
@@ -226,14 +226,14 @@ mod tests {
 
     #[test]
     fn errors_name_byte_record_and_step() {
-        let what = Malformation::CountBeyondEnd { list: RecordList::Impulses, count: 7, needs: 252, left: 40 };
+        let what = TraceFormatError::CountBeyondEnd { list: RecordList::Impulses, count: 7, needs: 252, left: 40 };
         let error = TraceError { offset: 72, frame: 4, step: 2, what };
         assert_eq!(
             error.to_string(),
             "byte 72, record 4 (step 2): the impulse list declares 7 entries, at least 252 bytes, but 40 are left; the \
              trace is cut short or belongs to another scene"
         );
-        let what = Malformation::SizeBeyondEnd { polynomial: 3, size: i32::MAX, left: 0 };
+        let what = TraceFormatError::SizeBeyondEnd { polynomial: 3, size: i32::MAX, left: 0 };
         let error = TraceError { offset: 0, frame: 0, step: 0, what };
         assert_eq!(
             error.to_string(),

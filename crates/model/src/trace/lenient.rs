@@ -9,7 +9,7 @@
 //! counted and not kept. The reference never logs as many, so their number alone is the finding.
 use super::{
     decode,
-    error::{Malformation, RecordList, TraceError},
+    error::{RecordList, TraceError, TraceFormatError},
     frame::{LoggedImpulse, PolynomialLog},
     layout::Layout,
     source::Source,
@@ -242,16 +242,16 @@ impl<R: Read> LenientReader<R> {
         self.source.ensure(1) > 0
     }
 
-    fn error(&self, offset: u64, malformation: Malformation) -> TraceError {
-        TraceError::new(self.layout, self.record, offset, malformation)
+    fn error(&self, offset: u64, format_error: TraceFormatError) -> TraceError {
+        TraceError::new(self.layout, self.record, offset, format_error)
     }
 
-    fn stop(&self, cause: ReadFailure, offset: u64, malformation: Malformation) -> ReadStop {
+    fn stop(&self, cause: ReadFailure, offset: u64, format_error: TraceFormatError) -> ReadStop {
         match self.source.error() {
             Some(error) if matches!(cause, ReadFailure::State | ReadFailure::Impulses) => {
                 ReadStop { cause: ReadFailure::Io, error: self.error(self.source.offset(), error) }
             }
-            _ => ReadStop { cause, error: self.error(offset, malformation) },
+            _ => ReadStop { cause, error: self.error(offset, format_error) },
         }
     }
 
@@ -266,26 +266,26 @@ impl<R: Read> LenientReader<R> {
     }
 
     /// Records damage at which no reader stops.
-    fn record_malformation(&mut self, offset: u64, malformation: Malformation) {
+    fn record_format_error(&mut self, offset: u64, format_error: TraceFormatError) {
         if self.notes.len() < MAX_NOTES {
-            self.notes.push(self.error(offset, malformation));
+            self.notes.push(self.error(offset, format_error));
         }
     }
 
     /// Records damage that the original ignores and the strict reader reports.
-    fn record_damage(&mut self, offset: u64, malformation: Malformation) -> Result<(), ReadStop> {
+    fn record_damage(&mut self, offset: u64, format_error: TraceFormatError) -> Result<(), ReadStop> {
         if self.is_strict {
-            return Err(self.stop(ReadFailure::State, offset, malformation));
+            return Err(self.stop(ReadFailure::State, offset, format_error));
         }
-        self.record_malformation(offset, malformation);
+        self.record_format_error(offset, format_error);
         Ok(())
     }
 
     /// Stops the strict reader at a record whose polynomials take too much memory.
     fn check_memory(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
         if self.is_strict && self.is_full(frame) {
-            let malformation = Malformation::FrameTooLarge { limit: self.limit as u64 };
-            return Err(self.stop(ReadFailure::Limit, offset, malformation));
+            let format_error = TraceFormatError::FrameTooLarge { limit: self.limit as u64 };
+            return Err(self.stop(ReadFailure::Limit, offset, format_error));
         }
         Ok(())
     }
@@ -315,7 +315,7 @@ impl<R: Read> LenientReader<R> {
             return Ok(());
         }
         let left = self.source.offset() - self.record_start + self.source.ensure(1) as u64;
-        let what = Malformation::missing_state(self.layout, self.record, complete_records, left);
+        let what = TraceFormatError::missing_state(self.layout, self.record, complete_records, left);
         Err(self.stop(ReadFailure::State, self.record_start, what))
     }
 
@@ -327,23 +327,23 @@ impl<R: Read> LenientReader<R> {
             return Err(self.stop(
                 ReadFailure::Impulses,
                 offset,
-                Malformation::CountCut { list, left: begin - offset },
+                TraceFormatError::CountCut { list, left: begin - offset },
             ));
         }
         if count < 0 {
-            self.record_damage(offset, Malformation::NegativeCount { list, count })?;
+            self.record_damage(offset, TraceFormatError::NegativeCount { list, count })?;
         }
         let entries = usize::try_from(count).unwrap_or(0);
         while impulses.len() < entries {
             if impulses.len() * decode::IMPULSE_MEMORY_BYTES > self.limit {
-                let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
+                let what = TraceFormatError::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(ReadFailure::Limit, offset, what));
             }
             if decode::decode_impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
                 let left = self.source.offset() - begin + self.source.ensure(1) as u64;
                 let needs = entries as u64 * list.entry_bytes();
                 let cause = if entries > STORABLE_IMPULSES { ReadFailure::Memory } else { ReadFailure::Impulses };
-                return Err(self.stop(cause, offset, Malformation::CountBeyondEnd { list, count, needs, left }));
+                return Err(self.stop(cause, offset, TraceFormatError::CountBeyondEnd { list, count, needs, left }));
             }
         }
         Ok(())
@@ -355,9 +355,9 @@ impl<R: Read> LenientReader<R> {
         let begin = self.source.offset();
         if self.has_failed {
             frame.is_unchanged = false;
-            self.record_damage(offset, Malformation::CountCut { list, left: begin - offset })?;
+            self.record_damage(offset, TraceFormatError::CountCut { list, left: begin - offset })?;
         } else if count < 0 {
-            self.record_damage(offset, Malformation::NegativeCount { list, count })?;
+            self.record_damage(offset, TraceFormatError::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
@@ -375,7 +375,7 @@ impl<R: Read> LenientReader<R> {
             frame.is_unchanged &= !trimmed;
             done += decoded_count;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
-                let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
+                let what = TraceFormatError::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(ReadFailure::Memory, offset, what));
             }
             if done < entries && !decode::has_short_polynomial(&mut self.source) {
@@ -387,7 +387,7 @@ impl<R: Read> LenientReader<R> {
         let missing = entries - done;
         if missing > 0 && entries > STORABLE_POLYNOMIALS {
             let left = self.source.offset() - begin;
-            let what = Malformation::CountBeyondEnd { list, count, needs: 4 * entries, left };
+            let what = TraceFormatError::CountBeyondEnd { list, count, needs: 4 * entries, left };
             return Err(self.stop(ReadFailure::Memory, offset, what));
         }
         let room = self.limit.saturating_sub(decode::memory_bytes(&frame.polynomials)) / size_of::<usize>();
@@ -404,15 +404,18 @@ impl<R: Read> LenientReader<R> {
         let offset = self.source.offset();
         let written = self.read_integer();
         if self.has_failed {
-            self.record_damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
+            self.record_damage(offset, TraceFormatError::PolynomialCut { polynomial: number, count })?;
         } else if written < 0 {
-            self.record_malformation(offset, Malformation::NegativeSize { polynomial: number, size: written });
+            self.record_format_error(offset, TraceFormatError::NegativeSize { polynomial: number, size: written });
         }
         let size = usize::try_from(written).unwrap_or(0);
         if self.is_strict && size > MAX_COEFFICIENTS {
-            self.record_malformation(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
+            self.record_format_error(
+                offset,
+                TraceFormatError::OversizedPolynomial { polynomial: number, size: written },
+            );
         } else if size > STORABLE_COEFFICIENTS {
-            let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
+            let what = TraceFormatError::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
             return Err(self.stop(ReadFailure::Memory, offset, what));
         }
         let is_complete = !self.has_failed;
@@ -451,7 +454,7 @@ impl<R: Read> LenientReader<R> {
         frame.is_unchanged &= !self.has_failed && written >= 0;
         if is_complete && self.has_failed {
             let left = self.source.offset() - begin;
-            self.record_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
+            self.record_damage(offset, TraceFormatError::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }
         Ok(())
     }

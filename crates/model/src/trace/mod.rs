@@ -18,7 +18,7 @@ mod source;
 mod writer;
 
 pub use counts::EventCounts;
-pub use error::{Malformation, RecordList, TraceError};
+pub use error::{RecordList, TraceError, TraceFormatError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
 pub use labels::{PolynomialLabel, collect_labels};
 pub use layout::Layout;

@@ -2,7 +2,7 @@
 //!
 //! For traces of any size, memory is bounded by one frame, and grows only with bytes that arrive.
 use super::{
-    error::{Malformation, RecordList, TraceError},
+    error::{RecordList, TraceError, TraceFormatError},
     frame::{Frame, LoggedImpulse},
     layout::Layout,
     lenient::{LenientFrame, LenientReader, MAX_NOTES},
@@ -132,10 +132,10 @@ impl<R: Read> Reader<R> {
     }
 
     /// Returns the oddity of an impulse, if it has one.
-    fn find_malformation(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
+    fn find_malformation(&self, number: u64, impulse: &LoggedImpulse) -> Option<TraceFormatError> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {
-            return Some(Malformation::UnknownKind { impulse: number, kind: impulse.kind });
+            return Some(TraceFormatError::UnknownKind { impulse: number, kind: impulse.kind });
         };
         let object = kind.second_name();
         let count = match kind {
@@ -147,7 +147,7 @@ impl<R: Read> Reader<R> {
         let second = (object, impulse.second, count.unwrap_or(usize::MAX));
         [first, second].into_iter().find_map(|(object, index, count)| {
             let inside = usize::try_from(index).is_ok_and(|index| index < count);
-            let what = Malformation::IndexOutOfRange { impulse: number, object: object.into(), index, count };
+            let what = TraceFormatError::IndexOutOfRange { impulse: number, object: object.into(), index, count };
             (!inside).then_some(what)
         })
     }
@@ -167,7 +167,7 @@ mod tests {
             let mut reader = Reader::new(endless, layout);
             reader.records = reader.records.with_limit(1 << 20);
             let error = reader.next(&mut Frame::default()).unwrap_err();
-            assert_eq!(error.what, Malformation::FrameTooLarge { limit: 1 << 20 });
+            assert_eq!(error.what, TraceFormatError::FrameTooLarge { limit: 1 << 20 });
             assert!(reader.offset() < 1 << 21);
         }
     }

@@ -1,7 +1,7 @@
 //! A stream with an absolute offset, and with a buffer that can be read before it is consumed.
 //!
 //! An error of the stream counts as its end and is kept. A reader treats it like missing bytes and can still name it.
-use super::error::Malformation;
+use super::error::TraceFormatError;
 use std::io::{self, Read};
 
 /// The size of the buffer, and of the largest piece that [`Source::ensure`] can provide in one call. A larger buffer
@@ -19,7 +19,7 @@ pub(crate) struct Source<R> {
     /// The length of the whole stream, if known. Nothing after it is read.
     length: Option<u64>,
     has_ended: bool,
-    error: Option<Malformation>,
+    error: Option<TraceFormatError>,
 }
 
 impl<R: Read> Source<R> {
@@ -42,7 +42,7 @@ impl<R: Read> Source<R> {
     }
 
     /// Returns the error that ended the stream.
-    pub(crate) fn error(&self) -> Option<Malformation> {
+    pub(crate) fn error(&self) -> Option<TraceFormatError> {
         self.error.clone()
     }
 
@@ -101,7 +101,7 @@ impl<R: Read> Source<R> {
                 Ok(count) => self.end += count,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
-                    self.error = Some(Malformation::Io { message: error.to_string() });
+                    self.error = Some(TraceFormatError::Io { message: error.to_string() });
                     self.has_ended = true;
                 }
             }

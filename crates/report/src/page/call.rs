@@ -108,7 +108,7 @@ fn describe_signs(study: &Study) -> String {
 }
 
 /// Returns whether a set of times neither begins nor ends within the step.
-fn is_flat(set: &[Interval]) -> bool {
+fn has_no_end_in_step(set: &[Interval]) -> bool {
     !interval_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
@@ -118,7 +118,7 @@ fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>
     let own = study.curves.iter().zip(logged).zip(&sets);
     let curves: Vec<PlottedPolynomial<'_>> =
         own.map(|((curve, own), set)| plot_polynomial(curve.role.to_string(), own, set)).collect();
-    if sets.iter().all(|set| is_flat(set)) {
+    if sets.iter().all(|set| has_no_end_in_step(set)) {
         return String::new();
     }
     let common = common_intervals(logged);
@@ -174,7 +174,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
 /// Draws the expected and the actual curve of one polynomial in the same plot.
 fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
     let own = positive_intervals(logged);
-    if is_flat(set) && is_flat(&own) {
+    if has_no_end_in_step(set) && has_no_end_in_step(&own) {
         return String::new();
     }
     // The names must be short, because they are left of the bars. The title names the polynomial.

@@ -1,7 +1,7 @@
 use super::*;
 use fosssim_findings::disclosure::Disclosure;
 use fosssim_judge::{Book, Damage, FindingCounts, Ruling};
-use fosssim_model::trace::Malformation;
+use fosssim_model::trace::TraceFormatError;
 use std::time::Duration;
 
 fn says(reason: Reason) -> String {
@@ -90,7 +90,7 @@ fn details_contain_only_visible_values() {
             frame: 1,
             step: 1,
             offset: 77,
-            what: Malformation::NegativeSize { polynomial: 3, size: -1 },
+            what: TraceFormatError::NegativeSize { polynomial: 3, size: -1 },
         }),
         trailing_bytes: true,
     };

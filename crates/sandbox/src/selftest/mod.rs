@@ -80,7 +80,7 @@ pub struct PromiseTable {
 
 impl PromiseTable {
     /// Returns the promises that are broken on this machine.
-    pub fn broken(&self) -> impl Iterator<Item = &Promise> {
+    pub fn broken_promises(&self) -> impl Iterator<Item = &Promise> {
         self.promises.iter().filter(|promise| matches!(promise.state, PromiseState::Broken(_)))
     }
 

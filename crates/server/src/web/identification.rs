@@ -103,7 +103,7 @@ roles! {
     Member: |parts, app| {
         let person = Person::from_request_parts(parts, app).await?;
         let address = Path::<CourseAddress>::from_request_parts(parts, app).await;
-        person.member_of(&address.map(|Path(at)| at.course).unwrap_or_default()).await
+        person.into_member(&address.map(|Path(at)| at.course).unwrap_or_default()).await
     };
     Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
     Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();

@@ -25,7 +25,7 @@ pub(super) struct Fields<T>(pub(super) T);
 /// The names in a URL. Names that the route does not have are empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct AddressParts {
+pub(super) struct PathParameters {
     pub(super) course: String,
     pub(super) assignment: String,
     pub(super) login: String,
@@ -166,7 +166,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
     }
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
+impl<S: Send + Sync> FromRequestParts<S> for PathParameters {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {

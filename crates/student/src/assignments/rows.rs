@@ -146,7 +146,7 @@ macro_rules! rows {
     (@ $type:ident [$edits:ident] $($mistake:ident $([$edit:expr])?,)*) => {
         impl $type {
             /// Returns the mistake's change of a pair's formulas, if it has one.
-            pub fn edit(self) -> Option<$edits> {
+            pub fn formula_edit(self) -> Option<$edits> {
                 match self {
                     $($(Self::$mistake => Some($edit),)?)*
                     _ => None,

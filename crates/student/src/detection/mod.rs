@@ -112,7 +112,7 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
 fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let mut lists = variants::polynomials(student, motion);
     let kind = motion.kind();
-    if let Some(edit) = student.mistake_in(&[FORMULA_AREAS[kind as usize]]).and_then(Mistake::edit) {
+    if let Some(edit) = student.mistake_in(&[FORMULA_AREAS[kind as usize]]).and_then(Mistake::formula_edit) {
         let approach = usize::from(student.has_right_approach());
         edit.apply(&Inputs::new(motion), &mut lists, Subject::all_of_kind(kind), approach);
     }

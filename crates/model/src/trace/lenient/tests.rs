@@ -87,7 +87,7 @@ fn a_missing_coefficient_repeats_the_one_before() {
     assert_eq!(read, [&[1.0, 2.0, 3.0][..], &[4.0, 5.0, 5.0], &[]]);
     assert!(!frame.is_unchanged);
     let note = frame.note.unwrap();
-    assert_eq!(note.what, Malformation::SizeBeyondEnd { polynomial: 1, size: 3, left: 16 });
+    assert_eq!(note.what, TraceFormatError::SizeBeyondEnd { polynomial: 1, size: 3, left: 16 });
     assert_eq!(note.offset, 36);
     assert_eq!(stop.cause, ReadFailure::State, "a failed stream has not even a state of zero bytes");
 }
@@ -112,7 +112,7 @@ fn polynomials_behind_a_cut_are_empty() {
     for cut in 8 + 12..8 + 12 + 4 {
         let (frame, _) = read(&bytes[..cut]);
         assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[1.0][..], &[], &[]], "cut at {cut}");
-        assert_eq!(frame.note.unwrap().what, Malformation::PolynomialCut { polynomial: 1, count: 3 });
+        assert_eq!(frame.note.unwrap().what, TraceFormatError::PolynomialCut { polynomial: 1, count: 3 });
     }
 }
 
@@ -143,7 +143,7 @@ fn negative_counts_and_sizes_are_zero_and_skip_nothing() {
     bytes[8..12].copy_from_slice(&(-1_i32).to_le_bytes());
     let (frame, stop) = read(&bytes);
     assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[][..], &[1.0]]);
-    assert_eq!(frame.note.unwrap().what, Malformation::NegativeCount { list: RecordList::Impulses, count: -3 });
+    assert_eq!(frame.note.unwrap().what, TraceFormatError::NegativeCount { list: RecordList::Impulses, count: -3 });
     assert!(!frame.is_unchanged);
     assert_eq!(stop.cause, ReadFailure::Impulses, "at the end of the file the count is missing");
 }

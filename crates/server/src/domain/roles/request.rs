@@ -83,7 +83,7 @@ impl Person {
     ///
     /// Fails if the person is not a member, or if the course does not exist. Both give the same error, so that
     /// outsiders do not learn whether a course exists.
-    pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
+    pub async fn into_member(self, slug: &str) -> Result<Member, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT course.id, course.slug, course.title, member.role FROM course
             LEFT JOIN member ON member.course = course.id AND member.account = ?

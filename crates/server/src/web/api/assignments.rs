@@ -1,7 +1,7 @@
 //! The API of assignments, and of the results of a whole class.
 use super::super::{
     archive_check,
-    input::{AddressParts, Body, QueryInput, SeenEvent, read_whole_numbers},
+    input::{Body, PathParameters, QueryInput, SeenEvent, read_whole_numbers},
     upload,
 };
 use crate::{
@@ -86,7 +86,7 @@ pub(super) struct Extension {
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
     staff: Staff,
-    AddressParts { assignment, .. }: AddressParts,
+    PathParameters { assignment, .. }: PathParameters,
     QueryInput(query): QueryInput<Revision>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
@@ -161,7 +161,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     responses((status = 200, description = "The grades")))]
 pub(super) async fn export(
     staff: Staff,
-    AddressParts { assignment, .. }: AddressParts,
+    PathParameters { assignment, .. }: PathParameters,
     QueryInput(query): QueryInput<GradesFormat>,
 ) -> Result<Response, Problem> {
     let format = query.format.as_deref().unwrap_or("csv");

@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::TokenName,
-        input::{AddressParts, Fields},
+        input::{Fields, PathParameters},
     },
     Page, PageFrame,
     course::{Row, read_rows},
@@ -61,7 +61,7 @@ pub(super) async fn show_home(person: Person) -> Page {
             others.push(course.course);
             continue;
         }
-        let member = person.clone().member_of(&course.course.slug).await?;
+        let member = person.clone().into_member(&course.course.slug).await?;
         let (assignments, closed): (Vec<Row>, Vec<Row>) = read_rows(&member).await?.into_iter().partition(Row::is_open);
         let is_guest = course.role == "admin";
         courses.push(HomeCourse { member, is_guest, assignments, unlisted: closed.len() });

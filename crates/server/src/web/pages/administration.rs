@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{CourseInput, WorkerTokenName},
-        input::{AddressParts, Fields, QueryInput},
+        input::{Fields, PathParameters, QueryInput},
     },
     Page, PageFrame,
     course::People,

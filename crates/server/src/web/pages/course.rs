@@ -1,6 +1,6 @@
 //! The pages of a course: its assignments, its members, its queue, and its audit log.
 use super::{
-    super::input::{AddressParts, Fields, QueryInput, SeenEvent},
+    super::input::{Fields, PathParameters, QueryInput, SeenEvent},
     Page, PageFrame, render, text,
 };
 use crate::{
@@ -231,7 +231,7 @@ pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) ->
     render_members(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 
-pub(super) async fn member_link(staff: Staff, AddressParts { login, .. }: AddressParts) -> Page {
+pub(super) async fn member_link(staff: Staff, PathParameters { login, .. }: PathParameters) -> Page {
     let link = staff.new_link(&login).await?.link;
     render_members(&staff, People::default(), Some((login, link))).await
 }

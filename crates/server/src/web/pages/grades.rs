@@ -1,6 +1,6 @@
 //! The pages about a class's grades, and about regrades.
 use super::{
-    super::input::{AddressParts, Fields, ListStart, QueryInput},
+    super::input::{Fields, ListStart, PathParameters, QueryInput},
     Page, PageFrame, render, scenes,
     settings::{Grading, SuiteOption, list_suites},
     statistics::{self, Statistics},
@@ -130,7 +130,7 @@ pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 
 pub(super) async fn show_class(
     staff: Staff,
-    AddressParts { course: slug, assignment, .. }: AddressParts,
+    PathParameters { course: slug, assignment, .. }: PathParameters,
     QueryInput(look): QueryInput<GradesQuery>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
@@ -163,7 +163,7 @@ pub(super) async fn show_class(
 
 pub(super) async fn begin_regrade(
     staff: Staff,
-    AddressParts { course: slug, assignment, .. }: AddressParts,
+    PathParameters { course: slug, assignment, .. }: PathParameters,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.apply_to(&staff.assignment(&assignment).await?.settings)?;
@@ -173,7 +173,7 @@ pub(super) async fn begin_regrade(
 
 pub(super) async fn show_regrade(
     staff: Staff,
-    AddressParts { course: slug, assignment, id, .. }: AddressParts,
+    PathParameters { course: slug, assignment, id, .. }: PathParameters,
     QueryInput(query): QueryInput<ListStart>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
