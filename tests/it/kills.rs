@@ -91,9 +91,9 @@ fn assert_nothing_left(workspace: &Workspace) {
     let left: Vec<_> = fs::read_dir(workspace.path("tmp")).expect("the folder").flatten().map(|e| e.path()).collect();
     assert!(left.is_empty(), "left behind: {left:?}");
     // Supervisors notice the end of their grader immediately, if the machine is not too busy.
-    let patience = Instant::now() + Duration::from_secs(60);
+    let deadline = Instant::now() + Duration::from_secs(60);
     while !processes_of(&workspace.path("")).is_empty() {
-        assert!(Instant::now() < patience, "left behind: {:?}", processes_of(&workspace.path("")));
+        assert!(Instant::now() < deadline, "left behind: {:?}", processes_of(&workspace.path("")));
         std::thread::yield_now();
     }
 }

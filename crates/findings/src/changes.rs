@@ -23,12 +23,12 @@ impl From<&Grade> for EarlierGrade {
 
 /// The changes of a submission since an earlier grading. Only groups of its present grade are compared.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Changes<'a> {
+pub struct GradeChanges<'a> {
     /// The points of the compared groups in the earlier grading, without extra points; `None` if that grading gave no
     /// points.
-    pub points: Option<f64>,
+    pub earlier_points: Option<f64>,
     /// The points that the compared groups are worth.
-    pub max_points: f64,
+    pub compared_points: f64,
     /// The scenes that were not accepted before and are now.
     pub newly_right: Vec<&'a SceneGrade>,
     /// The scenes that were accepted before and are not now.
@@ -41,16 +41,16 @@ pub struct Changes<'a> {
 impl Grade {
     /// Returns the changes since the earlier grading, if there is one. A scene that was not run in one of the gradings
     /// counts as unchanged. Groups that are left out of this grade are not compared.
-    pub fn changes(&self) -> Option<Changes<'_>> {
+    pub fn changes(&self) -> Option<GradeChanges<'_>> {
         let before = self.earlier_grade.as_ref()?;
         let is_here = |group: &&EarlierGroup| self.groups.iter().any(|own| own.name == group.name);
         let groups: Vec<&EarlierGroup> = before.groups.iter().filter(is_here).collect();
         let counted = || groups.iter().filter(|group| !group.extra);
         let scenes = groups.iter().flat_map(|group| &group.scenes);
         let verdicts: BTreeMap<&str, &str> = scenes.map(|scene| (&*scene.scene, &*scene.code)).collect();
-        let mut changes = Changes {
-            points: counted().map(|group| group.points).sum(),
-            max_points: counted().map(|group| group.max_points).sum(),
+        let mut changes = GradeChanges {
+            earlier_points: counted().map(|group| group.points).sum(),
+            compared_points: counted().map(|group| group.max_points).sum(),
             newly_right: Vec::new(),
             newly_wrong: Vec::new(),
             other_changes: Vec::new(),

@@ -43,7 +43,8 @@ pub struct LocatedFailure {
     #[serde(rename = "contents")]
     pub features: Vec<SceneFeature>,
     /// The number of scenes in which the program fails. All of them have these features.
-    pub failed: usize,
+    #[serde(rename = "failed")]
+    pub failed_scenes: usize,
     /// The number of scenes that have these features.
     #[serde(rename = "with")]
     pub scenes_with_features: usize,
@@ -51,7 +52,8 @@ pub struct LocatedFailure {
     #[serde(rename = "without")]
     pub scenes_without_features: usize,
     /// The first scene in which the program fails.
-    pub first: String,
+    #[serde(rename = "first")]
+    pub first_scene: String,
     /// The step of the last complete record in that scene; 0 for the first record.
     pub step: u32,
 }

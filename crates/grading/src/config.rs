@@ -234,7 +234,7 @@ pub(super) fn read_with_problems(text: &str) -> (Suite, Vec<(Position, String)>)
     }
     let run = read_command(&mut problems, raw.run);
     let raw_limits = raw.limits.unwrap_or_default();
-    let (limits, patience) = (read_limits(&raw_limits), read_skip_limits(&raw_limits));
+    let (limits, skip_limits) = (read_limits(&raw_limits), read_skip_limits(&raw_limits));
     let build = raw.build.map(|build| read_build(&mut problems, build));
     let is_without_groups = raw.group.as_ref().is_none_or(Vec::is_empty);
     if is_without_groups && is_readable {
@@ -268,7 +268,7 @@ pub(super) fn read_with_problems(text: &str) -> (Suite, Vec<(Position, String)>)
         show_output: raw.show_output.unwrap_or(false),
         build,
         limits,
-        skip_limits: patience,
+        skip_limits,
         notes,
         groups,
     };

@@ -108,10 +108,10 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     Some(LocatedFailure {
         failure: failing,
         features: features.into_iter().map(FeatureIndex::to_feature).collect(),
-        failed: failed.len(),
+        failed_scenes: failed.len(),
         scenes_with_features: with,
         scenes_without_features: all_scenes.len() - with,
-        first: first.scene.to_owned(),
+        first_scene: first.scene.to_owned(),
         step: first.steps,
     })
 }
@@ -158,7 +158,7 @@ mod tests {
         let features = scenes(24, 9, 85);
         let found = located(&features, |number| (number < 24).then_some(FailureKind::Crash)).expect("a place");
         assert_eq!(
-            (found.failed, found.scenes_with_features, found.scenes_without_features, found.step),
+            (found.failed_scenes, found.scenes_with_features, found.scenes_without_features, found.step),
             (24, 24, 61, 7)
         );
         // Both the kind of event and a property of the step that occurs in the same scenes are reported. The zones' own
@@ -171,7 +171,7 @@ mod tests {
         );
         let most =
             located(&features, |number| (number < 24 && number != 5).then_some(FailureKind::Crash)).expect("a place");
-        assert_eq!((most.failed, most.scenes_with_features, most.scenes_without_features), (23, 24, 61));
+        assert_eq!((most.failed_scenes, most.scenes_with_features, most.scenes_without_features), (23, 24, 61));
         let mixed = |number: usize| if number.is_multiple_of(2) { FailureKind::Time } else { FailureKind::Memory };
         let found = located(&features, |number| (number < 24).then_some(mixed(number))).expect("a place");
         assert_eq!(found.failure, FailureKind::Several);

@@ -50,7 +50,7 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
 
 /// Computes the grade from the results of all scenes, in the order of the plan. The build, the sandbox and the times
 /// are still missing in it. Speed counts if `is_timed` is true.
-pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
+pub(super) fn build_grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = mark_unwritten(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };

@@ -30,15 +30,15 @@ const SCATTERED_FACTOR: u32 = 4;
 /// Returns the first scene that is skipped, and the reason. `verdicts_and_times` has the verdict and the duration of
 /// each finished scene.
 pub(super) fn find_first_skipped(
-    patience: &SkipLimits,
+    limits: &SkipLimits,
     fail_fast: bool,
     verdicts_and_times: &[Option<(Verdict, Duration)>],
 ) -> Option<(usize, NotRunReason)> {
     let (mut stopped, mut worst, mut total) = (0, Verdict::Accepted, Duration::ZERO);
     let (mut scattered, mut worst_of_all) = (0, Verdict::Accepted);
     for (number, verdicts_and_times) in verdicts_and_times.iter().enumerate() {
-        if total >= patience.total {
-            return Some((number, NotRunReason::Total(patience.total)));
+        if total >= limits.total {
+            return Some((number, NotRunReason::Total(limits.total)));
         }
         let Some((verdict, took)) = *verdicts_and_times else {
             stopped = 0;
@@ -50,12 +50,12 @@ pub(super) fn find_first_skipped(
             true => (1, verdict),
             false => (0, verdict),
         };
-        if stopped == patience.time_outs && stopped > 0 {
+        if stopped == limits.time_outs && stopped > 0 {
             return Some((number + 1, NotRunReason::Limits { scenes: stopped, verdict: worst }));
         }
         if is_limit(verdict) {
             (scattered, worst_of_all) = (scattered + 1, worst_of_all.max(verdict));
-            if scattered == SCATTERED_FACTOR * patience.time_outs {
+            if scattered == SCATTERED_FACTOR * limits.time_outs {
                 return Some((number + 1, NotRunReason::Limits { scenes: scattered, verdict: worst_of_all }));
             }
         }

@@ -49,7 +49,7 @@ pub fn judge_trace<'a, R: Read + Send>(
 pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
     let results = results.into_iter().map(|result| (result, false)).collect();
     // The times of the runs are unknown, because the traces existed already.
-    let mut grade = Grade { warnings, ..score::grade(plan, submission, false, results) };
+    let mut grade = Grade { warnings, ..score::build_grade(plan, submission, false, results) };
     reconcile_explanations(&mut grade);
     grade
 }

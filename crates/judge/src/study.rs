@@ -22,7 +22,7 @@ fosssim_model::drops_leading!();
 
 /// One polynomial of a detection call, and its positive intervals.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Curve {
+pub struct StudiedPolynomial {
     /// The meaning of a positive value of the polynomial.
     pub role: Role,
     /// The polynomial's coefficients, highest power first, with nothing dropped.
@@ -35,7 +35,7 @@ pub struct Curve {
     pub positive_intervals: Vec<Interval>,
 }
 
-impl Curve {
+impl StudiedPolynomial {
     fn search(role: Role, untrimmed: Polynomial) -> Result<Self, EndlessSearch> {
         let endless = |_| EndlessSearch { role, coefficients: untrimmed };
         let logged = Polynomial::trimmed(untrimmed.coefficients());
@@ -69,7 +69,7 @@ pub struct EndlessSearch {
 
 /// The decision that follows from a list of polynomials.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Answer {
+pub struct PairDecision {
     /// The intervals in which all polynomials are positive, over all times. They are sorted and disjoint, and an
     /// interval may be a single time.
     pub positive_intervals: Vec<Interval>,
@@ -77,8 +77,8 @@ pub struct Answer {
     pub decision: Decision,
 }
 
-impl Answer {
-    fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, EndlessSearch> {
+impl PairDecision {
+    fn for_motion(motion: &PairMotion, curves: &[&StudiedPolynomial]) -> Result<Self, EndlessSearch> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
         // Each search was made separately before, and has ended.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
@@ -106,9 +106,9 @@ const MAX_SETS: usize = 32;
 #[derive(Debug, Clone, PartialEq)]
 pub struct RightApproach {
     /// The polynomial, which differs from the course's only in the coefficient of t^3.
-    pub curve: Curve,
+    pub curve: StudiedPolynomial,
     /// The decision that follows from this polynomial and the other three.
-    pub answer: Answer,
+    pub answer: PairDecision,
 }
 
 /// A detection call in detail.
@@ -117,9 +117,9 @@ pub struct Study {
     /// The pair and its motion.
     pub motion: PairMotion,
     /// The pair's polynomials in the order of the trace.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<StudiedPolynomial>,
     /// The reference's decision.
-    pub answer: Answer,
+    pub answer: PairDecision,
     /// Whether the pair provably collides, or provably does not, in every correct program. `None` means that
     /// round-off may change the decision.
     pub certain_decision: Option<bool>,
@@ -135,20 +135,20 @@ impl Study {
     pub fn for_motion(motion: &PairMotion) -> Result<Self, EndlessSearch> {
         let kind = motion.kind();
         let polynomials = motion.polynomials();
-        let curves: Vec<Curve> = polynomials
+        let curves: Vec<StudiedPolynomial> = polynomials
             .iter()
             .enumerate()
-            .map(|(number, &untrimmed)| Curve::search(Role::from_number(kind, number), untrimmed))
+            .map(|(number, &untrimmed)| StudiedPolynomial::search(Role::from_number(kind, number), untrimmed))
             .collect::<Result<_, _>>()?;
-        let answer = Answer::for_motion(motion, &curves.iter().collect::<Vec<_>>())?;
+        let answer = PairDecision::for_motion(motion, &curves.iter().collect::<Vec<_>>())?;
         let bounded = formulas::BoundedPairMotion::from(motion);
         let expected = bounded.polynomials();
         let right_approach = match right_approach(&polynomials, &expected) {
             None => None,
             Some(right) => {
-                let curve = Curve::search(Role::Approach, right)?;
+                let curve = StudiedPolynomial::search(Role::Approach, right)?;
                 let others = curves.iter().take(3).chain([&curve]).collect::<Vec<_>>();
-                let answer = Answer::for_motion(motion, &others)?;
+                let answer = PairDecision::for_motion(motion, &others)?;
                 Some(RightApproach { curve, answer })
             }
         };

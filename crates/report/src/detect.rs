@@ -14,7 +14,7 @@ use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
 use fosssim_judge::{
     PairText, PassText, find_differing_powers, find_factor,
-    study::{Answer, Curve, Study},
+    study::{PairDecision, StudiedPolynomial, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
 use fosssim_num::{interval::Interval, number_serde::WrittenNumbers, polynomial::Polynomial};
@@ -235,7 +235,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
 }
 
 /// Describes what the mathematically right approach polynomial would change.
-fn compare_approach(course: &Answer, right: &Answer, number: FormatFn) -> String {
+fn compare_approach(course: &PairDecision, right: &PairDecision, number: FormatFn) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
@@ -277,7 +277,7 @@ pub(crate) fn render_motion(motion: &PairMotion, number: FormatFn, style: Style)
 }
 
 /// Describes a polynomial, its zeros, and the intervals in which it is positive.
-fn polynomial_lines(name: &str, curve: &Curve, number: FormatFn, style: Style) -> String {
+fn polynomial_lines(name: &str, curve: &StudiedPolynomial, number: FormatFn, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", format_polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
@@ -431,7 +431,7 @@ struct HalfPlaneView {
 view! {
     /// A polynomial, its zeros, and the intervals in which it is positive.
     #[schemars(deny_unknown_fields)]
-    struct CurveView from curve: Curve {
+    struct CurveView from curve: StudiedPolynomial {
         /// The condition that holds while the polynomial is positive.
         role: Role = curve.role,
         /// The coefficients that are logged and passed to the root finder, highest power first. Leading coefficients
@@ -452,7 +452,7 @@ view! {
 view! {
     /// The decision that follows from a pair's polynomials.
     #[schemars(deny_unknown_fields)]
-    struct AnswerView from answer: Answer {
+    struct AnswerView from answer: PairDecision {
         /// The time intervals in which all polynomials are positive together, sorted and disjoint.
         positive: Vec<[WrittenNumber; 2]> = to_pairs(&answer.positive_intervals),
         /// Whether the pair collides in the step.

@@ -94,15 +94,15 @@ pub struct Metrics {
     /// The number of scores for learning platforms in each state.
     pub scores: Vec<(String, i64)>,
     /// The time in milliseconds that the oldest waiting job has waited so far.
-    pub oldest: i64,
+    pub longest_wait_ms: i64,
     /// The number of workers that have reported recently.
     pub workers: i64,
     /// The number of slots of all these workers together.
     pub slots: i64,
     /// The number of workers that claim no jobs because they can't grade.
-    pub paused: i64,
+    pub paused_workers: i64,
     /// The number of workers that are grading at present.
-    pub working: i64,
+    pub busy_workers: i64,
     /// The number of events of each kind that needs attention.
     pub events: Vec<(String, i64)>,
     /// The stored bytes of uploads and reports: of all courses, and of the course with the most bytes.
@@ -156,15 +156,16 @@ impl MetricsPage {
             self.gauge(name, help, "state", &states.map(|state| (state, count_of(counts, state))))?;
         }
         let help = "The time that the oldest waiting upload has waited, in seconds.";
-        self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
-        let idle = queue.workers - queue.working - queue.paused;
-        let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.paused as f64)];
+        self.write_number("oldest_waiting_seconds", help, queue.longest_wait_ms.max(0) as f64 / 1000.0)?;
+        let (busy, paused) = (queue.busy_workers, queue.paused_workers);
+        let idle = (queue.workers - busy - paused) as f64;
+        let by_state = [("working", busy as f64), ("idle", idle), ("aside", paused as f64)];
         let help = "Workers that were seen recently: they grade, wait for a job, or can't grade.";
         self.gauge("workers_by_state", help, "state", &by_state)?;
         for (name, help, value) in [
             ("workers", "Workers that were seen recently.", queue.workers),
             ("slots", "The slots of these workers.", queue.slots),
-            ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.paused),
+            ("workers_aside", "Workers that take no jobs, because they can't grade.", paused),
         ] {
             self.write_number(name, help, value as f64)?;
         }

@@ -105,7 +105,7 @@ impl HessianSum<'_> {
                 Slip::SecondOnly => index == 0,
                 Slip::FirstOnly => index == 1,
                 Slip::DiagonalOnly => index > 1,
-                Slip::OneHalf => index == 3,
+                Slip::OneBlockOffDiagonal => index == 3,
                 _ => false,
             };
             if has_slips && student.slips(term).any(is_left_out) {
@@ -130,9 +130,9 @@ impl HessianSum<'_> {
         let last = self.world.scene.particles.len() - 1;
         for axis in 0..2 {
             let is_left_out = |slip: Slip| match slip {
-                Slip::FirstOut => particle == 0,
-                Slip::LastOut => particle == last,
-                Slip::OnlyFirst => particle > 0,
+                Slip::WithoutFirstParticle => particle == 0,
+                Slip::WithoutLastParticle => particle == last,
+                Slip::OnlyFirstParticle => particle > 0,
                 Slip::XOnly => axis == 1,
                 Slip::YOnly => axis == 0,
                 _ => false,

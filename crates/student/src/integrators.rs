@@ -62,10 +62,10 @@ const fn whole_step_term(integrator: Integrator) -> Option<Term> {
 fn mishandle_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     let makes = |slip: Slip| world.student.makes_slip(whole, slip);
     for k in (0..state.x.len()).filter(|k| world.is_fixed(k / 2)) {
-        if makes(Slip::FixedStopped) || makes(Slip::FixedHalted) {
+        if makes(Slip::FixedVelocityZeroedFirst) || makes(Slip::FixedVelocityZeroedAfter) {
             state.v[k] = 0.0;
         }
-        if makes(Slip::FixedStopped) || makes(Slip::FixedStand) {
+        if makes(Slip::FixedVelocityZeroedFirst) || makes(Slip::FixedNotMoved) {
             state.x[k] = before.x[k];
         }
     }
@@ -89,7 +89,7 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a multiplication, because a change of sign would also change the sign of a NaN.
     let minus_one = black_box(-1.0);
-    let x = if student.makes_slip(of_v, Slip::Behind) {
+    let x = if student.makes_slip(of_v, Slip::ForcesAfterMove) {
         &student.add_scaled_lists(&state.x, h, &state.v)
     } else {
         &state.x

@@ -94,7 +94,7 @@ impl PenaltySum<'_> {
         let depth = distance - first - second - h;
         let power = match () {
             () if makes(Slip::Squared) => depth * depth,
-            () if makes(Slip::SquaredAway) => depth * depth.abs(),
+            () if makes(Slip::SquaredWithSign) => depth * depth.abs(),
             () => depth,
         };
         Some([k, power])
@@ -158,7 +158,7 @@ impl PenaltySum<'_> {
         let to_point = plane.point - vector_at(self.x, i);
         let n = match () {
             () if makes(Slip::ToPoint) => to_point,
-            () if makes(Slip::Undivided) => to_point.dot(&q) * q,
+            () if makes(Slip::NotNormalized) => to_point.dot(&q) * q,
             () => to_point.dot(&q) / q.dot(&q) * q,
         };
         let Some([k, depth]) = self.overlap_depth(term, length(n), [self.world.scene.particles[i].radius, 0.0]) else {
@@ -166,10 +166,10 @@ impl PenaltySum<'_> {
         };
         let u = unit(n);
         let push = match () {
-            () if makes(Slip::ToPoint) || makes(Slip::Undivided) => k * depth * u,
-            () if makes(Slip::OneSided) => k * depth * unit(q),
-            () if makes(Slip::OneSidedLong) => k * depth * q,
-            () if makes(Slip::OneSidedBack) => k * depth * -unit(q),
+            () if makes(Slip::ToPoint) || makes(Slip::NotNormalized) => k * depth * u,
+            () if makes(Slip::SameNormalBehind) => k * depth * unit(q),
+            () if makes(Slip::NormalAsGiven) => k * depth * q,
+            () if makes(Slip::OppositeNormalInFront) => k * depth * -unit(q),
             () => k * depth * u.dot(&q) / q.dot(&q) * q,
         };
         self.add_push(term, (0, i), length(n), push);

@@ -81,7 +81,7 @@ impl SimplePass<'_> {
             () if self.makes(term, Slip::Missing) => true,
             () if self.makes(term, Slip::Sign) => small > large,
             () if self.makes(term, Slip::NotStrict) => small <= large,
-            () if self.makes(term, Slip::Margin) => small + 0.01 < large,
+            () if self.makes(term, Slip::IgnoresSlowApproach) => small + 0.01 < large,
             () => small < large,
         };
         !self.makes(kind.detection, Slip::Missing)
@@ -93,7 +93,7 @@ impl SimplePass<'_> {
     fn contact_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
-            Slip::Unit => unit(n),
+            Slip::Normalized => unit(n),
             Slip::Doubled => 2.0 * n,
             Slip::Halved => 0.5 * n,
             _ => n,
@@ -185,7 +185,7 @@ impl SimplePass<'_> {
         let [of_particle, of_first] = self.tested_velocities(kind, [v1, v2]);
         let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
         let radii = [self.world.scene.particles[one].radius, self.world.edge_radius(kind.overlap, index)];
-        let is_off = self.makes(Term::ClosestPoint, Slip::EndsOut) && !(0.0..=1.0).contains(&on_line);
+        let is_off = self.makes(Term::ClosestPoint, Slip::NothingBeyondEnds) && !(0.0..=1.0).contains(&on_line);
         if is_off || !self.is_colliding(kind, n, radii, of_particle - of_first - turning) {
             return None;
         }
@@ -211,7 +211,7 @@ impl SimplePass<'_> {
             masses.swap(1, 2);
         }
         let [m1, m2, m3] = masses;
-        let is_plain = self.makes(kind.response, Slip::Unsquared);
+        let is_plain = self.makes(kind.response, Slip::SharesNotSquared);
         let (low, high) = if is_plain { (beta, alpha) } else { (beta * beta, alpha * alpha) };
         let [of_two, of_three] = match () {
             () if self.makes(kind.response, Slip::FullShares) => [1.0, 1.0],
@@ -233,20 +233,20 @@ impl SimplePass<'_> {
         let kind = &HALF_PLANE_KIND;
         let plane = self.world.scene.half_planes[index];
         let to_point = plane.point - vector_at(&state.x, one);
-        let q = if self.makes(kind.normal, Slip::Undivided) { plane.normal } else { unit(plane.normal) };
+        let q = if self.makes(kind.normal, Slip::NotNormalized) { plane.normal } else { unit(plane.normal) };
         let n = if self.makes(kind.normal, Slip::ToPoint) { to_point } else { to_point.dot(&q) * q };
         let seen = vector_at(&state.v, one);
-        let is_behind = self.makes(kind.overlap, Slip::OneSided) && to_point.dot(&q) > 0.0;
+        let is_behind = self.makes(kind.overlap, Slip::SameNormalBehind) && to_point.dot(&q) > 0.0;
         let reach = if is_behind { f64::INFINITY } else { self.world.scene.particles[one].radius };
         if !self.is_colliding(kind, n, [reach, 0.0], seen) {
             return None;
         }
         let n = self.contact_vector(kind, n);
-        if self.world.is_fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
+        if self.world.is_fixed(one) && self.makes(kind.response, Slip::FixedUnchanged) {
             return Some(n);
         }
         let (u, bounce, v) = (unit(n), self.restitution_factor(kind), self.velocity(kind, state, one));
-        let change = if self.makes(kind.response, Slip::Whole) { bounce * v } else { bounce * v.dot(&u) * u };
+        let change = if self.makes(kind.response, Slip::WholeVelocity) { bounce * v } else { bounce * v.dot(&u) * u };
         let part = TermPart { length: length(n), is_negative: true, ..TermPart::from_term(kind.response, one) };
         self.world.contribute(&mut state.v, part, change);
         Some(n)

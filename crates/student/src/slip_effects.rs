@@ -93,9 +93,9 @@ impl World {
             match edit.slip {
                 Slip::FirstOnly if role > 0 => return,
                 Slip::SecondOnly if role == 0 => return,
-                Slip::FirstOut if particle == 0 => return,
-                Slip::LastOut if particle == last => return,
-                Slip::OnlyFirst if particle > 0 => return,
+                Slip::WithoutFirstParticle if particle == 0 => return,
+                Slip::WithoutLastParticle if particle == last => return,
+                Slip::OnlyFirstParticle if particle > 0 => return,
                 Slip::OneEnd if role == 2 => return,
                 Slip::Missing => return,
                 // If one statement assigns the whole force, its first part overwrites the previous value.

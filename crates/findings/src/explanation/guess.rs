@@ -25,7 +25,7 @@ impl Guess {
     /// Returns the key of the guess as [`Explanation::claims`](super::Explanation::claims) contain it. It is a digest,
     /// because the key itself may name a formula.
     pub fn claim_key(&self) -> String {
-        format!("{:08x}", digest(self.key()) >> 32)
+        format!("{:08x}", hash_key(self.key()) >> 32)
     }
 
     /// Returns whether the guess can be the same mistake in several polynomials.
@@ -45,7 +45,7 @@ impl Guess {
 }
 
 /// Returns a digest of a text (FNV-1a), which is the same on every machine.
-pub fn digest(text: &str) -> u64 {
+pub fn hash_key(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 

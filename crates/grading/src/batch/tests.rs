@@ -255,7 +255,7 @@ fn a_crash_in_the_failsafe_is_located() {
     let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
     let others = grade.scenes().count() - crashed.len();
     assert_eq!(
-        (located.failed, located.scenes_with_features, located.scenes_without_features),
+        (located.failed_scenes, located.scenes_with_features, located.scenes_without_features),
         (crashed.len(), crashed.len(), others),
         "{located:?}"
     );
@@ -264,7 +264,7 @@ fn a_crash_in_the_failsafe_is_located() {
         (FailureKind::Crash, "the failsafe moves a zone")
     );
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
-    assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
+    assert_eq!((&located.first_scene, located.step), (&crashed[0].scene, reached.steps));
     let silent = stage.grade_with(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
     assert!(
         silent.located_failure.is_some() && disclosed_grade(&grade).located_failure.is_some(),

@@ -73,7 +73,7 @@ impl SubmissionGrading<'_> {
             wall,
             inferred_milestone: looks_like,
             program: program.map(|digest| digest.to_string()),
-            ..score::grade(plan, self.submission.name.clone(), true, results)
+            ..score::build_grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
             grade.located_failure = find_failing_features(&grade, || self.shared.load_features(plan));

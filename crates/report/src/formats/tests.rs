@@ -231,10 +231,10 @@ fn every_format_reports_the_common_features_of_failing_scenes() {
     grade.located_failure = Some(LocatedFailure {
         failure: FailureKind::Crash,
         features: vec![SceneFeature { family: "the failsafe moves a zone".into(), value: None }],
-        failed: 24,
+        failed_scenes: 24,
         scenes_with_features: 24,
         scenes_without_features: 61,
-        first: "Detection/a".to_owned(),
+        first_scene: "Detection/a".to_owned(),
         step: 14,
     });
     let sentence = "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others.";

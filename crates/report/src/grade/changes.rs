@@ -1,7 +1,7 @@
 //! Describes how a submission changed since an earlier grading.
 use super::{format_optional_points, format_points, phrases::list_first};
 use crate::{number::format_count, style::TextStyle};
-use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
+use fosssim_findings::{Grade, SceneGrade, Verdict, changes::GradeChanges};
 
 /// The maximum number of scenes that one line names.
 const MAX_NAMED: usize = 5;
@@ -14,7 +14,7 @@ pub(crate) fn change_lines(grade: &Grade) -> Vec<(TextStyle, String)> {
     let both = |(scene, then): &(&SceneGrade, Verdict)| {
         format!("{} ({}, was {})", scene.scene, scene.verdict.code(), then.code())
     };
-    let Changes { newly_right: right, newly_wrong: broke, other_changes: others, .. } = &changes;
+    let GradeChanges { newly_right: right, newly_wrong: broke, other_changes: others, .. } = &changes;
     let kinds: [(TextStyle, &str, Vec<String>); 3] = [
         (TextStyle::Right, "became right", right.iter().map(name).collect()),
         (TextStyle::Wrong, "broke", broke.iter().map(now).collect()),
@@ -33,9 +33,11 @@ pub(crate) fn change_lines(grade: &Grade) -> Vec<(TextStyle, String)> {
     if lines.is_empty() {
         lines.push((TextStyle::Faint, "no scene changed".to_owned()));
     }
-    let then = match format_points(changes.max_points) == format_points(grade.max_points) {
-        true => format_optional_points(changes.points),
-        false => format!("{} of {}", format_optional_points(changes.points), format_points(changes.max_points)),
+    let then = match format_points(changes.compared_points) == format_points(grade.max_points) {
+        true => format_optional_points(changes.earlier_points),
+        false => {
+            format!("{} of {}", format_optional_points(changes.earlier_points), format_points(changes.compared_points))
+        }
     };
     lines.insert(0, (TextStyle::Strong, format!("{then} points before, {} now", format_optional_points(grade.points))));
     lines

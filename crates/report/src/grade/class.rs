@@ -104,7 +104,7 @@ impl ClassFigures {
             [lowest, .., highest] => Some([mean, middle(), *lowest, *highest]),
             [one] => Some([*one; 4]),
         };
-        let change = |grade: &Grade| Some(grade.points?.total_cmp(&grade.changes()?.points?));
+        let change = |grade: &Grade| Some(grade.points?.total_cmp(&grade.changes()?.earlier_points?));
         let changed = |wanted: Ordering| grades.iter().filter(|grade| change(grade) == Some(wanted)).count();
         let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
         Self {

@@ -10,7 +10,7 @@ use crate::{
 use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Build, CourseNote, Grade, GroupGrade, Rules, SceneGrade, SkippedEntry, Visibility,
-    changes::Changes,
+    changes::GradeChanges,
     located_failure::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
@@ -126,11 +126,11 @@ view! {
 view! {
     /// The changes since an earlier grading of the same submission.
     #[schemars(deny_unknown_fields)]
-    struct ChangesView from changes: Changes<'_> {
+    struct ChangesView from changes: GradeChanges<'_> {
         /// The points in the earlier grading; null if it gave no points.
-        points: Option<f64> = changes.points,
+        points: Option<f64> = changes.earlier_points,
         /// The maximum number of points in the earlier grading.
-        max_points: f64 = changes.max_points,
+        max_points: f64 = changes.compared_points,
         /// The scenes that were not accepted before and are now.
         right: Vec<String> = changes.newly_right.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
         /// The scenes that were accepted before and are not now.
@@ -148,13 +148,13 @@ view! {
         /// The common features of these scenes, as a sentence.
         text: String = strip_control_characters(&words::describe_located(found)),
         /// The number of scenes in which the program fails.
-        failed: usize = found.failed,
+        failed: usize = found.failed_scenes,
         /// The number of failing scenes that have these features.
         with: usize = found.scenes_with_features,
         /// The number of scenes that have these features and in which the program does not fail.
         without: usize = found.scenes_without_features,
         /// The first scene in which the program fails.
-        first_scene: String = strip_control_characters(&found.first),
+        first_scene: String = strip_control_characters(&found.first_scene),
         /// The last step of `first_scene` that is complete in the trace.
         last_complete_step: u32 = found.step,
     }

@@ -97,7 +97,7 @@ fn changes_sign(study: &Study) -> bool {
 fn describe_signs(study: &Study) -> String {
     let list_roles = |is_wanted: bool| {
         let is_positive =
-            |curve: &study::Curve| curve.positive_intervals.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
+            |curve: &study::StudiedPolynomial| curve.positive_intervals.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
         let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
         names.map(|curve| curve.role.to_string()).collect::<Vec<_>>().join(", ")
     };
@@ -138,7 +138,7 @@ fn interval_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|interval| [interval.lo, interval.hi]).collect()
 }
 
-fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
+fn is_wrong(curve: &study::StudiedPolynomial, own: &[f64]) -> bool {
     !own.is_empty() && mark_differences(curve.logged.coefficients(), own).contains(&true)
 }
 

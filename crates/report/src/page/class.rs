@@ -78,7 +78,7 @@ struct Cluster<'a> {
     /// class.
     smallest: Option<&'a SmallestScene>,
     /// The first scene that all members fail, if they share no named mistake.
-    first: Option<String>,
+    first_failed_scene: Option<String>,
     /// The number of the members' mistake, with which the table can be filtered.
     mistake: Option<usize>,
 }
@@ -132,7 +132,7 @@ impl ClassContent<'_> {
                 smallest: smallest
                     .filter(|small| is_named_in(mistake, &small.explanations))
                     .min_by_key(|small| small.size()),
-                first: None,
+                first_failed_scene: None,
                 mistake: Some(number),
             }
         });
@@ -145,7 +145,7 @@ impl ClassContent<'_> {
                     "No known mistake fits, but these submissions fail the same {count} scenes for the same reason"
                 ),
             };
-            Cluster { heading, members, first: Some(shorten(&to_one_line(&first))), ..Cluster::default() }
+            Cluster { heading, members, first_failed_scene: Some(shorten(&to_one_line(&first))), ..Cluster::default() }
         });
         named.chain(same).collect()
     }
@@ -185,7 +185,7 @@ fn sort_key(points: Option<f64>) -> String {
 
 /// Returns the points of the earlier grading, if there is one.
 fn earlier_points(grade: &Grade) -> Option<f64> {
-    grade.changes()?.points
+    grade.changes()?.earlier_points
 }
 
 /// Returns the number of scenes that are accepted.

@@ -53,7 +53,8 @@ impl PackedMotions {
     pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
         if precision == Precision::Budgeted && raw <= MAX_COMPRESSED_BYTES {
-            let blocks: Vec<String> = tracks.iter().map(|(_, track)| encode_base64(&bytes(&track.values))).collect();
+            let blocks: Vec<String> =
+                tracks.iter().map(|(_, track)| encode_base64(&to_le_bytes(&track.values))).collect();
             if blocks.iter().map(String::len).sum::<usize>() <= MAX_EXACT_BYTES {
                 return Self { blocks, rounded: None };
             }
@@ -68,7 +69,7 @@ impl PackedMotions {
     }
 }
 
-fn bytes(values: &[f64]) -> Vec<u8> {
+fn to_le_bytes(values: &[f64]) -> Vec<u8> {
     values.iter().flat_map(|value| value.to_le_bytes()).collect()
 }
 
@@ -110,7 +111,7 @@ fn round_track(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
     let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
     let mut out = (kept.len() as u64).to_le_bytes().to_vec();
     for record in kept {
-        out.extend(bytes(&track.values[record * size..][..size]));
+        out.extend(to_le_bytes(&track.values[record * size..][..size]));
     }
     let mut last = vec![0_i64; 2 * particles];
     for record in track.values.chunks_exact(size.max(1)) {
@@ -174,7 +175,7 @@ mod tests {
         let Rounding { unit, .. } = pack(&all, Precision::Rounded).rounded.expect("rounded");
         let bytes = round_track(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
         assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
-        assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);
+        assert_eq!(bytes[8..8 + 96], super::to_le_bytes(&all.submission.values[24..36])[..]);
         let (mut at, mut last) = (8 + 2 * 96, [0_i64; 6]);
         for record in all.submission.values.chunks_exact(12) {
             for (last, value) in last.iter_mut().zip(&record[..6]) {

@@ -9,10 +9,10 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure {
         failure: failing,
         features: contents,
-        failed,
+        failed_scenes: failed,
         scenes_with_features: with,
         scenes_without_features: without,
-        first,
+        first_scene: first,
         step,
     } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
@@ -61,10 +61,10 @@ mod tests {
                 content("the failsafe moves a zone", None),
                 content("a hybrid step", Some(["zones", "one"])),
             ],
-            failed: 24,
+            failed_scenes: 24,
             scenes_with_features: 24,
             scenes_without_features: 61,
-            first: "GeometricTests/chain".to_owned(),
+            first_scene: "GeometricTests/chain".to_owned(),
             step: 14,
         };
         assert_eq!(
@@ -76,7 +76,7 @@ mod tests {
         let some = LocatedFailure {
             failure: FailureKind::Several,
             features: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
-            failed: 7,
+            failed_scenes: 7,
             scenes_with_features: 9,
             step: 0,
             ..found

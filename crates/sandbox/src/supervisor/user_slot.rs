@@ -48,7 +48,7 @@ fn retake_in(folder: &Path, user: u32) -> Option<UserSlot> {
 }
 
 /// Takes an id in the range `users`. The locks are in `folder`.
-fn take_from_range(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<UserSlot> {
+fn take_from_range(folder: &Path, users: Range<u32>, max_wait: Duration) -> io::Result<UserSlot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
     loop {
@@ -59,7 +59,7 @@ fn take_from_range(folder: &Path, users: Range<u32>, patience: Duration) -> io::
                 return Ok(UserSlot { user, _lock: lock });
             }
         }
-        if start.elapsed() >= patience || std::os::unix::process::parent_id() != grader {
+        if start.elapsed() >= max_wait || std::os::unix::process::parent_id() != grader {
             return Err(io::Error::other(format!("all {} user ids from {} on are in use", users.len(), users.start)));
         }
         std::thread::sleep(PAUSE);
@@ -113,7 +113,7 @@ mod tests {
     fn with_every_id_taken_a_run_waits_for_one() {
         let folder = tempfile::tempdir().unwrap();
         // No user has this id.
-        let take = |patience| take_from_range(folder.path(), 4_000_000_000..4_000_000_001, patience);
+        let take = |max_wait| take_from_range(folder.path(), 4_000_000_000..4_000_000_001, max_wait);
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");
         std::thread::scope(|scope| {

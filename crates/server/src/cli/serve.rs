@@ -59,7 +59,7 @@ pub(super) async fn serve(arguments: &ServiceArguments) -> Result<()> {
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
     std::fs::write(folders.data.join(ADDRESS_FILE), &public)?;
     let policy = queue_policy(&arguments.work);
-    let patience = Duration::from_secs(arguments.patience);
+    let max_pause = Duration::from_secs(arguments.patience);
     let provider = read_provider(&arguments.provider)?;
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
     let options = Options {
@@ -70,7 +70,7 @@ pub(super) async fn serve(arguments: &ServiceArguments) -> Result<()> {
         low_water: arguments.low_water * MIB,
         public: public.clone(),
         client_address: arguments.client_address.clone(),
-        patience,
+        max_pause,
         requests_per_minute: arguments.requests_per_minute,
         limits: TransferLimits::new(
             arguments.transfers as usize,

@@ -16,7 +16,7 @@ pub use address::Address;
 pub use fault::DbError;
 pub use migrate::{MigrateError, NEWEST, migrate, read_version};
 pub use transaction::Transaction;
-use transaction::{Inner, LastFailure, Turn};
+use transaction::{Inner, LastFailure, Permit};
 pub use value::{Column, FromRow, Row, Value};
 pub(crate) use value::{from_row, read_row};
 
@@ -73,7 +73,7 @@ pub struct Database {
     /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
     /// The permits of requests without priority limit how many of these requests use connections, or wait for them.
-    turns: Arc<Semaphore>,
+    permits: Arc<Semaphore>,
     has_priority: bool,
 }
 
@@ -103,7 +103,7 @@ impl Database {
     ///
     /// Fails if the database can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
-        let turns = match address {
+        let permits = match address {
             // The writer's queue stays short, so that a request with priority waits for at most one other.
             Address::Sqlite(_) => 1,
             Address::Postgres(_) => MAX_CONNECTIONS - PRIORITY_CONNECTIONS,
@@ -149,8 +149,8 @@ impl Database {
                 Engine::Postgres(pool)
             }
         };
-        let turns = Arc::new(Semaphore::new(turns as usize));
-        Ok(Self { engine, faults, is_outdated: Arc::default(), turns, has_priority: false })
+        let permits = Arc::new(Semaphore::new(permits as usize));
+        Ok(Self { engine, faults, is_outdated: Arc::default(), permits, has_priority: false })
     }
 
     /// Returns a handle to the same database with priority, for callers that must not wait, such as workers, whose
@@ -160,12 +160,12 @@ impl Database {
     }
 
     /// Waits for a permit, if one is needed.
-    async fn acquire_turn(&self) -> Result<Turn, sqlx::Error> {
+    async fn acquire_permit(&self) -> Result<Permit, sqlx::Error> {
         if self.has_priority {
             return Ok(None);
         }
-        let turn = tokio::time::timeout(WAIT_LIMIT, self.turns.clone().acquire_owned()).await;
-        Ok(turn.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
+        let permit = tokio::time::timeout(WAIT_LIMIT, self.permits.clone().acquire_owned()).await;
+        Ok(permit.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
     }
 
     /// Returns the kind of database.
@@ -195,17 +195,17 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes, and waits at most `patience` for earlier ones.
+    /// Begins a transaction that writes, and waits at most `timeout` for earlier ones.
     ///
     /// # Errors
     ///
-    /// Fails like [`Database::begin`], after at most `patience`.
-    pub async fn begin_with_timeout(&self, patience: Duration) -> Result<Transaction, DbError> {
+    /// Fails like [`Database::begin`], after at most `timeout`.
+    pub async fn begin_with_timeout(&self, timeout: Duration) -> Result<Transaction, DbError> {
         let begin = Instant::now();
         loop {
             let start = Instant::now();
             match self.begin().await {
-                Err(error) if error.is_transient() && start.elapsed() >= WAIT_LIMIT && begin.elapsed() < patience => {}
+                Err(error) if error.is_transient() && start.elapsed() >= WAIT_LIMIT && begin.elapsed() < timeout => {}
                 other => return other,
             }
         }
@@ -241,11 +241,11 @@ impl Database {
         &self,
         make: fn(T) -> Inner,
         begin: impl FnOnce() -> F,
-        needs_turn: bool,
+        needs_permit: bool,
     ) -> Result<Transaction, DbError> {
         let transaction = async {
-            let turn = if needs_turn { self.acquire_turn().await? } else { None };
-            Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), turn))
+            let permit = if needs_permit { self.acquire_permit().await? } else { None };
+            Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), permit))
         }
         .await;
         transaction.map_err(|error| self.faults.record(error))

@@ -14,7 +14,7 @@ pub struct Transaction {
     inner: Inner,
     faults: LastFailure,
     #[expect(dead_code, reason = "held until the transaction ends")]
-    turn: Turn,
+    permit: Permit,
 }
 
 /// The time of the last failure that a broken connection may have caused. Connections from before that time are closed.
@@ -41,7 +41,7 @@ impl LastFailure {
 }
 
 /// A request's permit; `None` if the request has priority and needs no permit.
-pub(super) type Turn = Option<OwnedSemaphorePermit>;
+pub(super) type Permit = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]
 pub(super) enum Inner {
@@ -65,8 +65,8 @@ macro_rules! query {
 }
 
 impl Transaction {
-    pub(super) fn new(inner: Inner, faults: LastFailure, turn: Turn) -> Self {
-        Self { inner, faults, turn }
+    pub(super) fn new(inner: Inner, faults: LastFailure, permit: Permit) -> Self {
+        Self { inner, faults, permit }
     }
 
     /// Returns the kind of database, PostgreSQL or SQLite.

@@ -65,7 +65,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
             WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS oldest";
     let row = transaction.one(statement, values![]).await?;
     metrics.scores.push(("done".to_owned(), row.int("sent")?));
-    metrics.oldest = row.int("oldest")?.max(0);
+    metrics.longest_wait_ms = row.int("oldest")?.max(0);
     let statement =
         "SELECT CAST(coalesce(sum(bytes), 0) AS {int}) AS bytes, CAST(coalesce(max(bytes), 0) AS {int}) AS most
         FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";
@@ -78,7 +78,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
                WHERE job.state = 'running' AND job.worker = worker.name) THEN 1 END) AS working
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let row = transaction.one(statement, values![recent, recent]).await?;
-    (metrics.workers, metrics.slots, metrics.paused) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
-    metrics.working = row.int("working")?;
+    (metrics.workers, metrics.slots, metrics.paused_workers) = (row.int("n")?, row.int("slots")?, row.int("aside")?);
+    metrics.busy_workers = row.int("working")?;
     Ok(metrics)
 }

@@ -97,7 +97,7 @@ pub struct Options {
     /// The source of a client's address: the connection itself, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
     /// The maximum pause while a request's body is received.
-    pub patience: Duration,
+    pub max_pause: Duration,
     /// The maximum number of requests of one account per minute.
     pub requests_per_minute: u32,
     /// The limits of parallel transfers and of stored bytes.

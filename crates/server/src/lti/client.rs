@@ -106,7 +106,7 @@ impl ServiceAnswer {
 /// A request to a platform's service.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceRequest {
-    pub(super) address: String,
+    pub(super) url: String,
     pub(super) accept: &'static str,
     /// The media type and the content of a POST request; `None` for a GET request.
     pub(super) body: Option<(&'static str, Vec<u8>)>,
@@ -141,14 +141,14 @@ impl Client {
     }
 
     /// Downloads a public file of a platform.
-    pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
-        let request = ServiceRequest { address: address.to_owned(), accept: "application/json", body: None };
+    pub(super) async fn get(&self, platform: &Platform, url: &str) -> Result<ServiceAnswer, ServiceFault> {
+        let request = ServiceRequest { url: url.to_owned(), accept: "application/json", body: None };
         self.send(platform, &request, None).await?.ensure_success()
     }
 
     async fn send(&self, platform: &Platform, request: &ServiceRequest, token: Option<&str>) -> ServiceResult {
-        let Some(url) = platform.parse_registered_url(&request.address, self.over_http) else {
-            let host = Url::parse(&request.address).ok().and_then(|url| url.host_str().map(str::to_owned));
+        let Some(url) = platform.parse_registered_url(&request.url, self.over_http) else {
+            let host = Url::parse(&request.url).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "another host".to_owned());
             return Err(ServiceFault::Rejected(format!(
                 "the service is on {host}, which is not one of the platform's hosts; an administrator can add it"
@@ -206,7 +206,7 @@ impl Client {
             .append_pair("scope", scope)
             .finish();
         let request = ServiceRequest {
-            address: settings.token_url.clone(),
+            url: settings.token_url.clone(),
             accept: "application/json",
             body: Some(("application/x-www-form-urlencoded", body.into_bytes())),
         };

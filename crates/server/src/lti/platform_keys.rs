@@ -23,7 +23,7 @@ pub(super) struct PlatformKeys(Mutex<HashMap<i64, KnownKeys>>);
 
 #[derive(Debug, Clone)]
 struct KnownKeys {
-    address: String,
+    url: String,
     keys: Vec<PublicKey>,
     read_at: Option<Instant>,
     requested_at: Instant,
@@ -58,7 +58,7 @@ fn usable_keys(set: KeySet) -> Vec<PublicKey> {
 impl PlatformKeys {
     fn find_keys(&self, platform: &Platform) -> Option<KnownKeys> {
         let all_keys = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        all_keys.get(&platform.id).filter(|all_keys| all_keys.address == platform.settings.keys_url).cloned()
+        all_keys.get(&platform.id).filter(|all_keys| all_keys.url == platform.settings.keys_url).cloned()
     }
 
     /// Returns the platform's key that is called `kid`.
@@ -77,13 +77,13 @@ impl PlatformKeys {
         }
         let answer = client.get(platform, &platform.settings.keys_url).await;
         let keys = answer.and_then(|answer| answer.read("the platform's keys").map(usable_keys));
-        let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
+        let (now, url) = (Instant::now(), platform.settings.keys_url.clone());
         let updated = match keys {
-            Ok(keys) => KnownKeys { address, keys, read_at: Some(now), requested_at: now },
+            Ok(keys) => KnownKeys { url, keys, read_at: Some(now), requested_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
                 let before = cached.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE_LIFETIME));
-                let none = || KnownKeys { address, keys: Vec::new(), read_at: None, requested_at: now };
+                let none = || KnownKeys { url, keys: Vec::new(), read_at: None, requested_at: now };
                 KnownKeys { requested_at: now, ..before.unwrap_or_else(none) }
             }
         };

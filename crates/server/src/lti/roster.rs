@@ -41,13 +41,13 @@ pub async fn fetch(
     client: &Client,
     database: &Database,
     platform: &Platform,
-    address: &str,
+    url: &str,
 ) -> Result<Vec<LtiPerson>, ServiceFault> {
     let mut members = Vec::new();
-    let mut next = Some(address.to_owned());
+    let mut next = Some(url.to_owned());
     for _ in 0..MAX_PAGES {
-        let Some(address) = next else { return Ok(members) };
-        let request = ServiceRequest { address, accept: MEDIA_TYPE, body: None };
+        let Some(url) = next else { return Ok(members) };
+        let request = ServiceRequest { url, accept: MEDIA_TYPE, body: None };
         let answer = client.call(database, platform, scope::MEMBERS_SCOPE, &request).await?;
         let page: RosterPage = answer.read("the list of members")?;
         members.extend(page.members.into_iter().filter_map(to_person));
@@ -76,7 +76,7 @@ fn to_person(member: Member) -> Option<LtiPerson> {
 fn next_page(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {
-        let (address, after) = after.split_once('>')?;
+        let (url, after) = after.split_once('>')?;
         // The parameters end where the next link begins, with a bracket.
         let (parameters, further) = after.split_at(after.find('<').unwrap_or(after.len()));
         let is_next = parameters.split([';', ',']).any(|parameter| {
@@ -86,7 +86,7 @@ fn next_page(header: &str) -> Option<String> {
             })
         });
         if is_next {
-            return Some(address.to_owned());
+            return Some(url.to_owned());
         }
         rest = further;
     }

@@ -161,7 +161,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Re
     body["userId"] = json!(parcel.subject);
     body["timestamp"] = json!(calendar::format_iso(parcel.stamp));
     let request = ServiceRequest {
-        address: scores_address(&line_item)?,
+        url: scores_url(&line_item)?,
         accept: "application/json",
         body: Some(("application/vnd.ims.lis.v1.score+json", body.to_string().into_bytes())),
     };
@@ -175,7 +175,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Re
 
 /// Returns the URL to which a column's scores are sent: the column's URL with `/scores` at the end of the path
 /// (AGS 3.4).
-fn scores_address(line_item: &str) -> Result<String, ServiceFault> {
+fn scores_url(line_item: &str) -> Result<String, ServiceFault> {
     let invalid = || ServiceFault::Rejected("the URL of the grade book's column is invalid".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| invalid())?;
     url.path_segments_mut().map_err(|()| invalid())?.pop_if_empty().push("scores");
@@ -200,7 +200,7 @@ async fn line_item(database: &Database, lti: &Lti, score: &ReadyScore) -> Result
         let column = score::find_column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
         transaction.commit().await?;
         match column {
-            ColumnState::Known(address) => return Ok(address),
+            ColumnState::Known(url) => return Ok(url),
             ColumnState::Claimed => tokio::time::sleep(POLL_INTERVAL).await,
             ColumnState::Unclaimed => {
                 let column = find_or_create(database, lti, score, container).await;
@@ -225,7 +225,7 @@ async fn find_or_create(
     let mut url = Url::parse(container).map_err(unreadable)?;
     url.query_pairs_mut().append_pair("resource_link_id", &score.resource);
     let request =
-        ServiceRequest { address: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
+        ServiceRequest { url: url.into(), accept: "application/vnd.ims.lis.v2.lineitemcontainer+json", body: None };
     let answer = lti.client.call(database, &score.platform, scope::LINE_ITEM, &request).await?;
     let found: Vec<LineItem> = answer.read("the list of columns")?;
     if let Some(item) = found.into_iter().find(|item| item.link.as_ref() == Some(&score.resource)) {
@@ -237,7 +237,7 @@ async fn find_or_create(
     });
     const LINE_ITEM_TYPE: &str = "application/vnd.ims.lis.v2.lineitem+json";
     let request = ServiceRequest {
-        address: container.to_owned(),
+        url: container.to_owned(),
         accept: LINE_ITEM_TYPE,
         body: Some((LINE_ITEM_TYPE, item.to_string().into_bytes())),
     };
@@ -254,8 +254,8 @@ mod tests {
             ("https://a/lineitems/1/", "https://a/lineitems/1/scores"),
             ("https://a/1/lineitem?type_id=2", "https://a/1/lineitem/scores?type_id=2"),
         ] {
-            assert_eq!(super::scores_address(line_item).expect("an address"), scores);
+            assert_eq!(super::scores_url(line_item).expect("a URL"), scores);
         }
-        assert!(super::scores_address("mailto:somebody").is_err());
+        assert!(super::scores_url("mailto:somebody").is_err());
     }
 }

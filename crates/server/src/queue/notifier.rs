@@ -37,15 +37,15 @@ impl Notifier {
 }
 
 impl Subscription {
-    /// Waits for a change, but not longer than `patience`. Returns whether there was a change.
-    pub async fn wait(&mut self, patience: Duration) -> bool {
-        match tokio::time::timeout(patience, self.0.changed()).await {
+    /// Waits for a change, but not longer than `max_wait`. Returns whether there was a change.
+    pub async fn wait(&mut self, max_wait: Duration) -> bool {
+        match tokio::time::timeout(max_wait, self.0.changed()).await {
             Ok(Ok(())) => true,
             Err(_) => false,
             // The notifier was dropped, so there will be no changes. Wait anyway, so that the caller does not loop
             // without a pause.
             Ok(Err(_)) => {
-                tokio::time::sleep(patience).await;
+                tokio::time::sleep(max_wait).await;
                 false
             }
         }

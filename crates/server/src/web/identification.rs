@@ -105,7 +105,7 @@ roles! {
         let address = Path::<CourseAddress>::from_request_parts(parts, app).await;
         person.into_member(&address.map(|Path(at)| at.course).unwrap_or_default()).await
     };
-    Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
+    Staff: |parts, app| Member::from_request_parts(parts, app).await?.into_staff();
     Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();
     RemoteWorker: |parts, app| {
         let token = read_secrets(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;

@@ -25,7 +25,7 @@ pub(super) struct Fields<T>(pub(super) T);
 /// The names in a URL. Names that the route does not have are empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct PathParameters {
+pub(super) struct UrlPathParts {
     pub(super) course: String,
     pub(super) assignment: String,
     pub(super) login: String,
@@ -90,7 +90,7 @@ async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
         }
         Ok(bytes)
     };
-    tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
+    tokio::time::timeout(app.max_pause, reading).await.map_err(|_| Problem::too_slow())?
 }
 
 /// Converts whole numbers such as `7.0` to integers. Some languages write integers in this form, and JSON Schema
@@ -166,7 +166,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
     }
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for PathParameters {
+impl<S: Send + Sync> FromRequestParts<S> for UrlPathParts {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {

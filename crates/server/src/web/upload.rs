@@ -68,7 +68,7 @@ pub(super) struct ReceivedFile {
 /// The folder in which uploads are received, and the longest pause that is allowed.
 struct Inbox<'a> {
     incoming: &'a Path,
-    patience: Duration,
+    max_pause: Duration,
 }
 
 /// Receives the body of a request. The body is the file itself, or a form with a field `file`.
@@ -76,7 +76,7 @@ pub(super) async fn receive(app: &App, request: Request, max_bytes: u64) -> Resu
     if let Err(problem) = app.ensure_disk_space() {
         return Err(reject(app, request, max_bytes, problem).await);
     }
-    receive_into(&Inbox { incoming: &app.incoming, patience: app.patience }, request, max_bytes).await
+    receive_into(&Inbox { incoming: &app.incoming, max_pause: app.max_pause }, request, max_bytes).await
 }
 
 /// Rejects an upload before anything is stored. The body is still read, because many programs read the answer only
@@ -85,11 +85,11 @@ pub(super) async fn reject(app: &App, request: Request, max_bytes: u64, problem:
     if request.headers().contains_key(header::EXPECT) {
         return problem;
     }
-    let until = tokio::time::Instant::now() + app.patience * MAX_PAUSES;
+    let until = tokio::time::Instant::now() + app.max_pause * MAX_PAUSES;
     let mut body = request.into_body().into_data_stream();
     let mut size = 0;
     while size <= max_bytes {
-        let pause = tokio::time::Instant::now() + app.patience;
+        let pause = tokio::time::Instant::now() + app.max_pause;
         match tokio::time::timeout_at(until.min(pause), body.next()).await {
             Ok(Some(Ok(chunk))) => size += chunk.len() as u64,
             _ => break,
@@ -117,7 +117,7 @@ pub async fn receive_form(
         .header(header::CONTENT_TYPE, "multipart/form-data; boundary=x")
         .body(Body::from_stream(futures_util::stream::iter(pieces)))
         .map_err(|_| Problem::fault())?;
-    let received = receive_into(&Inbox { incoming, patience: Duration::from_secs(60) }, request, max_bytes).await?;
+    let received = receive_into(&Inbox { incoming, max_pause: Duration::from_secs(60) }, request, max_bytes).await?;
     let size = std::fs::metadata(&received.file)?.len();
     Ok((size, [received.name, received.form, received.key]))
 }
@@ -134,7 +134,7 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
 }
 
 async fn receive_into(inbox: &Inbox<'_>, request: Request, max_bytes: u64) -> Result<ReceivedFile, Problem> {
-    let deadline = Instant::now() + inbox.patience * MAX_PAUSES + allowed_time(max_bytes);
+    let deadline = Instant::now() + inbox.max_pause * MAX_PAUSES + allowed_time(max_bytes);
     if !is_form(&request) {
         ensure(announced_size(&request).is_none_or(|announced| announced <= max_bytes), Problem::too_large(max_bytes))?;
         let body: Body = request.into_body();
@@ -153,7 +153,7 @@ async fn receive_into(inbox: &Inbox<'_>, request: Request, max_bytes: u64) -> Re
         Multipart::from_request(request, &()).await.map_err(|error| Problem::invalid(error.body_text()))?;
     let (mut file, mut name, mut form, mut key) = (None, None, None, None);
     loop {
-        let next = tokio::time::timeout(inbox.patience, multipart.next_field()).await;
+        let next = tokio::time::timeout(inbox.max_pause, multipart.next_field()).await;
         let field = next.map_err(|_| Problem::too_slow())?.map_err(|error| Problem::invalid(error.body_text()))?;
         let Some(field) = field else { break };
         match field.name() {
@@ -178,7 +178,7 @@ async fn receive_into(inbox: &Inbox<'_>, request: Request, max_bytes: u64) -> Re
 async fn short_text(inbox: &Inbox<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     loop {
-        let chunk = tokio::time::timeout(inbox.patience, field.chunk()).await.map_err(|_| Problem::too_slow())?;
+        let chunk = tokio::time::timeout(inbox.max_pause, field.chunk()).await.map_err(|_| Problem::too_slow())?;
         match chunk.map_err(|error| Problem::invalid(error.body_text()))? {
             Some(chunk) if bytes.len() + chunk.len() <= 200 => bytes.extend_from_slice(&chunk),
             Some(_) => return Err(Problem::invalid("a field is longer than 200 bytes")),
@@ -201,7 +201,7 @@ async fn write_file<E: Display>(
     loop {
         let remaining = deadline.saturating_duration_since(Instant::now());
         ensure(remaining != Duration::ZERO, Problem::too_slow())?;
-        let next = tokio::time::timeout(remaining.min(inbox.patience), stream.next()).await;
+        let next = tokio::time::timeout(remaining.min(inbox.max_pause), stream.next()).await;
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
             Some(Err(error)) => {

@@ -116,8 +116,8 @@ impl JobSource for LocalSource {
         }
     }
 
-    async fn wait(&self, patience: Duration) {
-        self.subscription.lock().await.wait(patience.min(SEARCH_INTERVAL)).await;
+    async fn wait(&self, max_wait: Duration) {
+        self.subscription.lock().await.wait(max_wait.min(SEARCH_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {

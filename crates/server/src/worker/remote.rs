@@ -161,8 +161,8 @@ impl JobSource for RemoteSource {
         .await
     }
 
-    async fn wait(&self, patience: Duration) {
-        tokio::time::sleep(patience.min(REQUEST_INTERVAL)).await;
+    async fn wait(&self, max_wait: Duration) {
+        tokio::time::sleep(max_wait.min(REQUEST_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {

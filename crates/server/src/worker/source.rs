@@ -29,8 +29,8 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// assign a job that no worker receives.
     fn claim(&self) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
 
-    /// Waits until there may be a job, but not longer than `patience`. The call may be interrupted.
-    fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
+    /// Waits until there may be a job, but not longer than `max_wait`. The call may be interrupted.
+    fn wait(&self, max_wait: Duration) -> impl Future<Output = ()> + Send;
 
     /// Extends a lease, and reports the progress of the grading if it is known.
     fn renew(

@@ -1,5 +1,5 @@
 //! Finds the sample that shows a mistake best: it is wrong, early, and has short inputs.
-use super::study::{Case, PolynomialStudy};
+use super::study::{PolynomialSample, PolynomialStudy};
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
@@ -14,7 +14,7 @@ pub(super) fn find_smallest_example(study: &PolynomialStudy) -> Option<(usize, E
     Some((count_digits(best), build_example(study, best)))
 }
 
-fn build_example(study: &PolynomialStudy, case: &Case) -> Example {
+fn build_example(study: &PolynomialStudy, case: &PolynomialSample) -> Example {
     let sample = case.sample;
     let expected: Vec<f64> = case.expected.iter().map(|coefficient| coefficient.value).collect();
     Example {
@@ -28,7 +28,7 @@ fn build_example(study: &PolynomialStudy, case: &Case) -> Example {
 }
 
 /// Returns the number of characters of the inputs.
-fn count_digits(case: &Case) -> usize {
+fn count_digits(case: &PolynomialSample) -> usize {
     example_values(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }
 

@@ -25,7 +25,7 @@ pub use super::sampling::Sample;
 
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
-    guess::{CoefficientGuess, Guess, QuantityGuess, digest},
+    guess::{CoefficientGuess, Guess, QuantityGuess, hash_key},
     sampling::{ROUND_OFF, polynomial_matches},
     topic::{ExplanationTopic, PolynomialEvidence},
 };
@@ -33,7 +33,7 @@ use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
 use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, body_polynomials};
 use std::collections::BTreeMap;
-use study::{Candidate, Case, PolynomialStudy};
+use study::{Candidate, PolynomialSample, PolynomialStudy};
 
 /// The maximum number of guesses about a polynomial that are kept in addition to the reported one.
 const MAX_CLAIMS: usize = 128;
@@ -175,7 +175,7 @@ pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialD
     };
     let form: Vec<PolynomialDetail> = form.iter().map(bare).collect();
     // Factors are rounded, because they are measured.
-    format!("{subject:?}/{}/{:016x}", guess.claim_key(), digest(&format!("{guess:?} {form:.5?}")))
+    format!("{subject:?}/{}/{:016x}", guess.claim_key(), hash_key(&format!("{guess:?} {form:.5?}")))
 }
 
 /// Returns the known mistakes that give the logged polynomial in all samples: mistakes in the formulas of this kind, or
@@ -227,7 +227,7 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     let candidate = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;
-        let predict = |case: &Case| named.polynomial(study.subject, &case.inputs).unwrap_or_default();
+        let predict = |case: &PolynomialSample| named.polynomial(study.subject, &case.inputs).unwrap_or_default();
         let (reproduced, scaled) = study.count_predicted(predict)?;
         Some(Candidate {
             guess: Guess::Named(named.key.into()),

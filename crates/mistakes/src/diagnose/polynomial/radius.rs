@@ -2,7 +2,7 @@
 //! those of another body.
 use super::{
     compare::logged_at,
-    study::{Candidate, Case, PolynomialStudy},
+    study::{Candidate, PolynomialSample, PolynomialStudy},
     take_distinct,
 };
 use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess};
@@ -68,7 +68,7 @@ fn overlap(subject: Subject, inputs: &Inputs, square: BoundedValue) -> Vec<Bound
 
 /// Returns the square of the sum of the radii that the logged overlap contains, by least squares; `None` if it has no
 /// root.
-fn fit_square(subject: Subject, case: &Case) -> Option<f64> {
+fn fit_square(subject: Subject, case: &PolynomialSample) -> Option<f64> {
     let [without, with_one] = [0.0, 1.0].map(|square| overlap(subject, &case.inputs, BoundedValue::from_exact(square)));
     let (mut product, mut norm) = (0.0, 0.0);
     for (power, (none, one)) in without.iter().rev().zip(with_one.iter().rev()).enumerate() {

@@ -2,7 +2,7 @@
 //! NaN.
 use super::{
     compare::{expected_at, logged_at, polynomial_matches},
-    study::{Candidate, Case, PolynomialStudy, median, ratio},
+    study::{Candidate, PolynomialSample, PolynomialStudy, median, ratio},
 };
 use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
 use fosssim_num::{
@@ -34,7 +34,7 @@ fn new_candidate(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, 
 
 /// Adds properties that need no prediction.
 fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
-    let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
+    let mut check = |guess, detail, cost, holds: &dyn Fn(&PolynomialSample) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
             found.push(new_candidate(guess, detail, cost, reproduced));
         }
@@ -64,7 +64,7 @@ fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 }
 
 /// Returns whether all logged numbers are single-precision and close to the expected ones.
-fn is_single_precision(case: &Case) -> bool {
+fn is_single_precision(case: &PolynomialSample) -> bool {
     let single = |value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "the test is whether truncation changes the number")]
         let rounded = value as f32;
@@ -94,7 +94,7 @@ fn predict(
     guess: ListGuess,
     detail: Option<PolynomialDetail>,
     cost: f64,
-    predict: impl Fn(&Case) -> Vec<BoundedValue>,
+    predict: impl Fn(&PolynomialSample) -> Vec<BoundedValue>,
 ) -> Option<Candidate> {
     let (reproduced, scaled) = study.count_predicted(predict)?;
     Some(new_candidate(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
@@ -130,9 +130,9 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
         }
         let formula = &readings(other)[0];
         let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
-        let formed = |case: &Case| formula.polynomial(&case.inputs);
+        let formed = |case: &PolynomialSample| formula.polynomial(&case.inputs);
         found.extend(predict(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
-        let negative = |case: &Case| negate_coefficients(&formed(case));
+        let negative = |case: &PolynomialSample| negate_coefficients(&formed(case));
         found.extend(predict(study, ListGuess::OtherPolynomialNegated, detail(), 3.0, negative));
     }
 }
@@ -142,9 +142,9 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
         let (last, first) = (PolynomialDetail::LastOnly(length), PolynomialDetail::FirstOnly(length));
-        let end = |case: &Case| case.expected[case.expected.len() - length..].to_vec();
+        let end = |case: &PolynomialSample| case.expected[case.expected.len() - length..].to_vec();
         found.extend(predict(study, guess, Some(last), 2.0 + 0.01 * length as f64, end));
-        let beginning = |case: &Case| case.expected[..length].to_vec();
+        let beginning = |case: &PolynomialSample| case.expected[..length].to_vec();
         found.extend(predict(study, ListGuess::CutEnd, Some(first), 2.5, beginning));
     }
 }
@@ -152,7 +152,7 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 /// Returns the guess that every displacement has the same factor (velocities, for example), so that each coefficient
 /// has a power of this factor.
 fn guess_scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
-    let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
+    let step = |case: &PolynomialSample| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;
     let is_new = factor > 0.0 && (factor - 1.0).abs() > 1e-9;
     if !is_new || study.subject.degree() < 2 {

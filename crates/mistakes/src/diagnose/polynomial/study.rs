@@ -30,7 +30,7 @@ const SAMPLES_PER_EXCEPTION: usize = 50;
 const RATIO_TOLERANCE: f64 = 1e-9;
 
 /// One polynomial of one sample.
-pub(super) struct Case<'a> {
+pub(super) struct PolynomialSample<'a> {
     /// The sample that contains the polynomial.
     pub sample: &'a Sample,
     /// The logged coefficients.
@@ -50,7 +50,7 @@ pub(super) struct PolynomialStudy<'a> {
     /// The polynomial that is studied.
     pub subject: Subject,
     /// The samples that have the polynomial, with finite inputs.
-    pub cases: Vec<Case<'a>>,
+    pub cases: Vec<PolynomialSample<'a>>,
     /// The number of wrong polynomials.
     pub wrong_count: usize,
     probes: Vec<usize>,
@@ -76,7 +76,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Collects the logged values of a polynomial. Returns `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
-        let mut cases: Vec<Case<'a>> = samples
+        let mut cases: Vec<PolynomialSample<'a>> = samples
             .iter()
             .filter(|sample| sample.motion.kind() == subject.kind())
             .filter_map(|sample| {
@@ -88,7 +88,7 @@ impl<'a> PolynomialStudy<'a> {
                     || judged.other_form(number).is_some_and(|other| is_right(other, logged));
                 let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite())
                     && logged.iter().all(|value| value.is_finite());
-                finite.then_some(Case { sample, logged, inputs, expected, is_right: right, scale: 1.0 })
+                finite.then_some(PolynomialSample { sample, logged, inputs, expected, is_right: right, scale: 1.0 })
             })
             .collect();
         accept_small_scales(&mut cases);
@@ -104,15 +104,15 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the wrong samples on which a guess is tried first.
-    pub fn probes(&self) -> impl Iterator<Item = &Case<'a>> {
+    pub fn probes(&self) -> impl Iterator<Item = &PolynomialSample<'a>> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
     /// Returns the number of samples that a predicted polynomial reproduces: with the submission's usual scale, without
     /// a scale, or otherwise with any positive scale. The flag is set in the last case. Returns `None` if fewer than
     /// half of the wrong samples are reproduced.
-    pub fn count_predicted(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
-        let at_usual_scale = |case: &Case| {
+    pub fn count_predicted(&self, predict: impl Fn(&PolynomialSample) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
+        let at_usual_scale = |case: &PolynomialSample| {
             let predicted = predict(case);
             polynomial_matches(&predicted, case.logged, case.scale) || polynomial_matches(&predicted, case.logged, 1.0)
         };
@@ -127,7 +127,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the number of samples with a property. Returns `None` if fewer than half of the wrong samples have it,
     /// if the first wrong sample lacks it, or if right samples contradict it.
-    pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
+    pub fn count_if(&self, holds: impl Fn(&PolynomialSample) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.is_right).is_some_and(|first| !holds(first)) {
             return None;
         }
@@ -154,7 +154,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the number of samples that the right formula reproduces within the tolerance of a guess.
     pub fn count_reproduced(&self) -> usize {
-        let holds = |case: &&Case| {
+        let holds = |case: &&PolynomialSample| {
             polynomial_matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case)
         };
         self.cases.iter().filter(holds).count()
@@ -162,7 +162,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the largest deviation of a coefficient, relative to the size of its terms.
     pub fn max_error(&self) -> f64 {
-        let of_case = |case: &Case| {
+        let of_case = |case: &PolynomialSample| {
             let scale = fit_scale(&case.expected, case.logged).unwrap_or(case.scale);
             let powers = 0..case.expected.len().max(case.logged.len());
             let errors = powers.map(|power| {
@@ -217,7 +217,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Returns the powers whose coefficients have the same ratio to the expected ones as the given power, in nearly all
     /// samples.
     fn find_agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
-        let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
+        let agrees = |case: &PolynomialSample, anchor: Option<f64>, power: usize| {
             let (anchor, other) = (anchor?, ratio(case, power)?);
             Some(anchor > 0.0 && (other - anchor).abs() <= RATIO_TOLERANCE * anchor)
         };
@@ -238,7 +238,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Returns the number of logged coefficients that match the expected ones with the given scales. Dropped
     /// coefficients are not counted, because with a small scale all of them could be right.
     fn count_agreements(&self, scale: impl Fn(usize) -> f64) -> f64 {
-        let agreeing = |(index, case): (usize, &Case)| {
+        let agreeing = |(index, case): (usize, &PolynomialSample)| {
             let agrees = |power: &usize| {
                 let (expected, logged) = (expected_at(&case.expected, *power), logged_at(case.logged, *power));
                 logged.is_some() && exceeds_round_off(expected) && coefficient_matches(expected, logged, scale(index))
@@ -251,7 +251,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Counts the samples in which each coefficient differs, one line per different coefficient, with `subject` as the
     /// polynomial.
     pub fn count_differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
-        let differs = |case: &&Case, power: usize| {
+        let differs = |case: &&PolynomialSample, power: usize| {
             !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
         };
         let line = |power: usize| {
@@ -269,7 +269,7 @@ impl<'a> PolynomialStudy<'a> {
 }
 
 /// Returns the ratio of the logged to the expected coefficient, if the difference exceeds round-off.
-pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
+pub(super) fn ratio(case: &PolynomialSample, power: usize) -> Option<f64> {
     let expected = expected_at(&case.expected, power);
     let ratio = logged_at(case.logged, power)? / expected.value;
     (expected.value.abs() > 1e-4 * expected.bound && ratio.is_finite()).then_some(ratio)
@@ -289,7 +289,7 @@ pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item 
 
 /// Returns whether a prediction matches the logged polynomial at some scale. If fewer than two coefficients are
 /// certain, every scale fits, so the case's own scale is used.
-fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
+fn fits_at_any_scale(predicted: &[BoundedValue], case: &PolynomialSample) -> bool {
     if predicted.iter().filter(|coefficient| exceeds_round_off(**coefficient)).count() < 2 {
         return polynomial_matches(predicted, case.logged, case.scale);
     }
@@ -298,7 +298,7 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
 
 /// Treats wrong samples as right if they match with the usual scale of right samples. With a small scale, the course's
 /// library drops coefficients that matter, so the scale cannot be fitted to each sample.
-fn accept_small_scales(cases: &mut [Case]) {
+fn accept_small_scales(cases: &mut [PolynomialSample]) {
     let scales = cases.iter().filter(|case| case.is_right).filter_map(|case| fit_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };
     for case in cases.iter_mut().filter(|case| !case.is_right) {
@@ -307,7 +307,7 @@ fn accept_small_scales(cases: &mut [Case]) {
 }
 
 /// Keeps at most [`MAX_CASES`] samples in their order, and prefers wrong ones.
-fn thin_out(cases: Vec<Case>) -> Vec<Case> {
+fn thin_out(cases: Vec<PolynomialSample>) -> Vec<PolynomialSample> {
     if cases.len() <= MAX_CASES {
         return cases;
     }

@@ -4,7 +4,7 @@ use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
     sparse::{DesignMatrix, WeightedColumns},
-    study::{Candidate, Case, PolynomialStudy, median, spread_indices},
+    study::{Candidate, PolynomialSample, PolynomialStudy, median, spread_indices},
 };
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::BoundedValue;
@@ -112,7 +112,7 @@ impl<'a> TermFit<'a> {
         Self { study, formula, reading, dictionary, expected, products }
     }
 
-    fn case(&self, index: usize) -> &Case<'a> {
+    fn case(&self, index: usize) -> &PolynomialSample<'a> {
         &self.study.cases[index]
     }
 

@@ -5,7 +5,7 @@ use crate::{
     style::{Style, TextStyle},
     wrap::count_columns,
 };
-use fosssim_findings::{Grade, GroupGrade, changes::Changes};
+use fosssim_findings::{Grade, GroupGrade, changes::GradeChanges};
 
 /// A column of the table: its cells, of which the first is the heading, and their alignment.
 struct TextColumn {
@@ -25,10 +25,10 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let score = column("points", true, &|grade| format_optional_points(grade.points));
     let verdict = column("verdict", false, &|grade| grade.verdict.name().to_owned());
     let seconds = column("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
-    let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
+    let since = |heading: &str, cell: &dyn Fn(GradeChanges<'_>) -> String| {
         column(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
     };
-    let before = since("before", &|changes| format_optional_points(changes.points));
+    let before = since("before", &|changes| format_optional_points(changes.earlier_points));
     let right = since("right", &|changes| format!("+{}", changes.newly_right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.newly_wrong.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());

@@ -118,7 +118,7 @@ impl Member {
     /// # Errors
     ///
     /// Fails if the person is not staff.
-    pub fn staff(self) -> Result<Staff, Problem> {
+    pub fn into_staff(self) -> Result<Staff, Problem> {
         if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("only the course's staff can do this")) }
     }
 }

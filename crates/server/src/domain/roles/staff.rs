@@ -36,7 +36,7 @@ pub struct NewSuite {
     /// The suite's name.
     pub name: String,
     /// Whether the suite hides groups.
-    pub hides: bool,
+    pub hides_groups: bool,
 }
 
 /// A suite that was uploaded to a course before.
@@ -130,7 +130,7 @@ impl Staff {
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
         // A suite whose groups are unknown may also hide some.
-        let hides_groups = change.suite.is_none_or(|suite| suite.hides);
+        let hides_groups = change.suite.is_none_or(|suite| suite.hides_groups);
         let withholds_groups = was_published && hides_groups && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.to_json(), withholds_groups];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;

@@ -51,9 +51,9 @@ pub struct Overview {
     /// The number of students in the course.
     pub students: i64,
     /// The number of students who have submitted something.
-    pub handed_in: i64,
+    pub students_submitted: i64,
     /// The number of students with an accepted submission.
-    pub accepted: i64,
+    pub students_accepted: i64,
     /// The number of submissions to the assignment.
     pub submissions: i64,
     /// The number of students' requests for a review that are not answered.
@@ -64,7 +64,7 @@ pub struct Overview {
     pub slots: i64,
 }
 
-from_row! { Overview { students, handed_in, accepted, submissions, requests, regrades, slots } }
+from_row! { Overview { students, students_submitted, students_accepted, submissions, requests, regrades, slots } }
 from_row! { Request { submission, number, login, text = "request", requested_at } }
 
 fn check_text(what: &str, text: &str, min: usize) -> Result<(), Problem> {
@@ -262,8 +262,8 @@ impl Member {
             return Ok(None);
         }
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT count(DISTINCT member.account) AS handed_in, count(*) AS submissions,
-            count(DISTINCT CASE WHEN result.code = 'AC' THEN member.account END) AS accepted,
+        let statement = "SELECT count(DISTINCT member.account) AS students_submitted, count(*) AS submissions,
+            count(DISTINCT CASE WHEN result.code = 'AC' THEN member.account END) AS students_accepted,
             (SELECT count(*) FROM member WHERE member.course = ? AND member.role = 'student') AS students,
             (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
                 WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,

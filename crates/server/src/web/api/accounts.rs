@@ -1,5 +1,5 @@
 //! The API of accounts and tokens, and the lists that administrators see.
-use super::super::input::{Body, PathParameters, QueryInput};
+use super::super::input::{Body, QueryInput, UrlPathParts};
 use crate::{
     domain::{Account, Admin, Event, EventQuery, Link, NewToken, Person, Queue, TokenInfo},
     problem::Problem,

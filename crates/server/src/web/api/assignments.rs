@@ -1,7 +1,7 @@
 //! The API of assignments, and of the results of a whole class.
 use super::super::{
     archive_check,
-    input::{Body, PathParameters, QueryInput, SeenEvent, read_whole_numbers},
+    input::{Body, QueryInput, SeenEvent, UrlPathParts, read_whole_numbers},
     upload,
 };
 use crate::{
@@ -86,7 +86,7 @@ pub(super) struct Extension {
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
     staff: Staff,
-    PathParameters { assignment, .. }: PathParameters,
+    UrlPathParts { assignment, .. }: UrlPathParts,
     QueryInput(query): QueryInput<Revision>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
@@ -151,7 +151,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
         }
     }
     let name = suite.get("name").and_then(toml::Value::as_str).unwrap_or_default().chars().take(200).collect();
-    Ok(NewSuite { name, hides: hides_groups, ..NewSuite::default() })
+    Ok(NewSuite { name, hides_groups, ..NewSuite::default() })
 }
 
 /// Returns the class's grades as a table (`csv`, one line per student), or all submissions as JSON lines (`jsonl`, one
@@ -161,7 +161,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     responses((status = 200, description = "The grades")))]
 pub(super) async fn export(
     staff: Staff,
-    PathParameters { assignment, .. }: PathParameters,
+    UrlPathParts { assignment, .. }: UrlPathParts,
     QueryInput(query): QueryInput<GradesFormat>,
 ) -> Result<Response, Problem> {
     let format = query.format.as_deref().unwrap_or("csv");

@@ -1,5 +1,5 @@
 //! The API of courses and their members.
-use super::super::input::{Body, PathParameters, QueryInput, SeenEvent, TextBody};
+use super::super::input::{Body, QueryInput, SeenEvent, TextBody, UrlPathParts};
 use crate::{
     domain::{Admin, Course, CourseMembership, Event, EventQuery, Link, MemberInfo, MemberLine, Person, Staff},
     problem::{Problem, ensure},

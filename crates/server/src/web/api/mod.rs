@@ -11,7 +11,7 @@ macro_rules! answers {
         #[utoipa::path($method, path = $path, tag = $tag $(, params($kind))? $(, request_body = $body)?,
             responses((status = $status, body = $type)))]
         pub(super) async fn $name(
-            $sender: $role $(, PathParameters { $($at,)* .. }: PathParameters)? $(, QueryInput($query): QueryInput<$kind>)?
+            $sender: $role $(, UrlPathParts { $($at,)* .. }: UrlPathParts)? $(, QueryInput($query): QueryInput<$kind>)?
                 $(, Body($input): Body<$body>)?
         ) -> Result<(StatusCode, Json<$type>), Problem> {
             Ok((StatusCode::$status, Json($answer.await?.into())))
@@ -28,7 +28,7 @@ macro_rules! actions {
         #[utoipa::path($method, path = $path, tag = $tag $(, params($kind))? $(, request_body = $body)?,
             responses((status = $status, description = $done)))]
         pub(super) async fn $name(
-            $sender: $role $(, PathParameters { $($at,)* .. }: PathParameters)? $(, QueryInput($query): QueryInput<$kind>)?
+            $sender: $role $(, UrlPathParts { $($at,)* .. }: UrlPathParts)? $(, QueryInput($query): QueryInput<$kind>)?
                 $(, Body($input): Body<$body>)?
         ) -> Result<StatusCode, Problem> {
             $do.await?;

@@ -1,5 +1,5 @@
 //! The API of learning platforms.
-use super::super::input::{Body, PathParameters, QueryInput};
+use super::super::input::{Body, QueryInput, UrlPathParts};
 use crate::{
     domain::{Admin, RosterMode, RosterRead, ScoreInfo, Staff},
     lti::{Platform, PlatformSettings},

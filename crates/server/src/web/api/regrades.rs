@@ -1,5 +1,5 @@
 //! The API of regrades.
-use super::super::input::{Body, ListStart, PathParameters, QueryInput, read_whole_numbers};
+use super::super::input::{Body, ListStart, QueryInput, UrlPathParts, read_whole_numbers};
 use crate::{
     domain::{Regrade, Settings, Staff},
     problem::Problem,

@@ -1,7 +1,7 @@
 //! The API of submissions.
 use super::super::{
     archive_check, download,
-    input::{ArrivalTime, Body, PathParameters, QueryInput},
+    input::{ArrivalTime, Body, QueryInput, UrlPathParts},
     upload,
 };
 use crate::{
@@ -43,7 +43,7 @@ pub(super) struct UploadParameters {
     responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
     member: Member,
-    PathParameters { assignment, .. }: PathParameters,
+    UrlPathParts { assignment, .. }: UrlPathParts,
     QueryInput(about): QueryInput<UploadParameters>,
     headers: HeaderMap,
     request: Request,
@@ -129,7 +129,7 @@ pub(in crate::web) struct ReviewRequest {
     responses((status = 200, description = "The report")))]
 pub(super) async fn report(
     member: Member,
-    PathParameters { id, name, .. }: PathParameters,
+    UrlPathParts { id, name, .. }: UrlPathParts,
     request_headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
@@ -151,7 +151,7 @@ pub(super) async fn report(
     responses((status = 200, description = "The file")))]
 pub(super) async fn upload(
     member: Member,
-    PathParameters { id, .. }: PathParameters,
+    UrlPathParts { id, .. }: UrlPathParts,
     request_headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;

@@ -2,7 +2,7 @@
 //! body is a file, the lease is in the header `Fosssim-Lease`, as `JOB:ATTEMPT:KEY`.
 use super::super::{
     download,
-    input::{Body, PathParameters},
+    input::{Body, UrlPathParts},
     upload,
 };
 use crate::{
@@ -64,7 +64,7 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
     responses((status = 200, description = "The file's bytes")))]
 pub(super) async fn artifact(
     remote: RemoteWorker,
-    PathParameters { digest, .. }: PathParameters,
+    UrlPathParts { digest, .. }: UrlPathParts,
     headers: HeaderMap,
 ) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
@@ -80,7 +80,7 @@ pub(super) async fn artifact(
     responses((status = 200, body = Artifact)))]
 pub(super) async fn store(
     remote: RemoteWorker,
-    PathParameters { digest, .. }: PathParameters,
+    UrlPathParts { digest, .. }: UrlPathParts,
     request: Request,
 ) -> Result<Json<Artifact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;

@@ -2,10 +2,10 @@
 use super::{
     super::{
         api::TokenName,
-        input::{Fields, PathParameters},
+        input::{Fields, UrlPathParts},
     },
     Page, PageFrame,
-    course::{Row, read_rows},
+    course::{AssignmentRow, read_rows},
     render, text,
 };
 use crate::{
@@ -37,7 +37,7 @@ struct HomeCourse {
     /// Whether the person sees the course as administrator, without being a member.
     is_guest: bool,
     /// The course's assignments that accept submissions at present.
-    assignments: Vec<Row>,
+    assignments: Vec<AssignmentRow>,
     /// The number of the course's assignments that are not listed.
     unlisted: usize,
 }
@@ -62,9 +62,9 @@ pub(super) async fn show_home(person: Person) -> Page {
             continue;
         }
         let member = person.clone().into_member(&course.course.slug).await?;
-        let (assignments, closed): (Vec<Row>, Vec<Row>) = read_rows(&member).await?.into_iter().partition(Row::is_open);
+        let (assignments, rest): (Vec<_>, _) = read_rows(&member).await?.into_iter().partition(AssignmentRow::is_open);
         let is_guest = course.role == "admin";
-        courses.push(HomeCourse { member, is_guest, assignments, unlisted: closed.len() });
+        courses.push(HomeCourse { member, is_guest, assignments, unlisted: rest.len() });
     }
     let checks_traces = person.app.checker.is_some();
     render(&Home { frame, name: person.account.name, courses, others, checks_traces })

@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{CourseInput, WorkerTokenName},
-        input::{Fields, PathParameters, QueryInput},
+        input::{Fields, QueryInput, UrlPathParts},
     },
     Page, PageFrame,
     course::People,

@@ -1,6 +1,6 @@
 //! The page that compares two submissions to an assignment, by the scenes in which they differ.
 use super::{
-    super::input::{PathParameters, QueryInput},
+    super::input::{QueryInput, UrlPathParts},
     Page, PageFrame, grades, render, text,
 };
 use crate::{
@@ -58,7 +58,7 @@ fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
 
 pub(super) async fn show_page(
     staff: Staff,
-    PathParameters { course: slug, id, .. }: PathParameters,
+    UrlPathParts { course: slug, id, .. }: UrlPathParts,
     QueryInput(query): QueryInput<OtherSubmission>,
 ) -> Page {
     let first = staff.submission(id).await?;

@@ -1,6 +1,6 @@
 //! The pages of a course: its assignments, its members, its queue, and its audit log.
 use super::{
-    super::input::{Fields, PathParameters, QueryInput, SeenEvent},
+    super::input::{Fields, QueryInput, SeenEvent, UrlPathParts},
     Page, PageFrame, render, text,
 };
 use crate::{
@@ -21,20 +21,20 @@ use std::time::{SystemTime, UNIX_EPOCH};
 struct CoursePage {
     frame: PageFrame,
     member: Member,
-    assignments: Vec<Row>,
+    assignments: Vec<AssignmentRow>,
     /// Sentences about the space for uploads.
     storage_notes: Vec<String>,
 }
 
 /// An assignment as a row in its course's table.
-pub(super) struct Row {
+pub(super) struct AssignmentRow {
     pub(super) assignment: Assignment,
     pub(super) work: OwnWork,
     /// The numbers about the class; `None` for students.
     pub(super) overview: Option<Overview>,
 }
 
-impl Row {
+impl AssignmentRow {
     /// Returns whether submissions wait although no worker is connected. For students it always returns false.
     pub(super) fn lacks_worker(&self) -> bool {
         self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
@@ -146,11 +146,11 @@ pub(super) struct NewMember {
 }
 
 /// Returns the assignments of a course as rows of its table.
-pub(super) async fn read_rows(member: &Member) -> Result<Vec<Row>, Problem> {
+pub(super) async fn read_rows(member: &Member) -> Result<Vec<AssignmentRow>, Problem> {
     let mut rows = Vec::new();
     for assignment in member.assignments().await? {
         let (work, overview) = (OwnWork::read(member, &assignment).await?, member.overview(&assignment).await?);
-        rows.push(Row { assignment, work, overview });
+        rows.push(AssignmentRow { assignment, work, overview });
     }
     Ok(rows)
 }
@@ -231,7 +231,7 @@ pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) ->
     render_members(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 
-pub(super) async fn member_link(staff: Staff, PathParameters { login, .. }: PathParameters) -> Page {
+pub(super) async fn member_link(staff: Staff, UrlPathParts { login, .. }: UrlPathParts) -> Page {
     let link = staff.new_link(&login).await?.link;
     render_members(&staff, People::default(), Some((login, link))).await
 }

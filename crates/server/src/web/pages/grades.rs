@@ -1,6 +1,6 @@
 //! The pages about a class's grades, and about regrades.
 use super::{
-    super::input::{Fields, ListStart, PathParameters, QueryInput},
+    super::input::{Fields, ListStart, QueryInput, UrlPathParts},
     Page, PageFrame, render, scenes,
     settings::{Grading, SuiteOption, list_suites},
     statistics::{self, Statistics},
@@ -130,7 +130,7 @@ pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 
 pub(super) async fn show_class(
     staff: Staff,
-    PathParameters { course: slug, assignment, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
     QueryInput(look): QueryInput<GradesQuery>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
@@ -163,7 +163,7 @@ pub(super) async fn show_class(
 
 pub(super) async fn begin_regrade(
     staff: Staff,
-    PathParameters { course: slug, assignment, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.apply_to(&staff.assignment(&assignment).await?.settings)?;
@@ -173,7 +173,7 @@ pub(super) async fn begin_regrade(
 
 pub(super) async fn show_regrade(
     staff: Staff,
-    PathParameters { course: slug, assignment, id, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, id, .. }: UrlPathParts,
     QueryInput(query): QueryInput<ListStart>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;

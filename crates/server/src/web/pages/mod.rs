@@ -9,7 +9,7 @@ macro_rules! actions {
             $do:expr => $to:literal $(, $part:expr)*;)*) => {
         $($(#[doc = $doc])*
         pub(super) async fn $name(
-            $sender: $role $(, PathParameters { $($at,)* .. }: PathParameters)? $(, Fields($form): Fields<$fields>)?
+            $sender: $role $(, UrlPathParts { $($at,)* .. }: UrlPathParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
             Ok(Redirect::to(&format!($to $(, $part)*)))
@@ -35,7 +35,7 @@ mod student;
 mod submission;
 mod text;
 
-use super::input::PathParameters;
+use super::input::UrlPathParts;
 use crate::{
     domain::{Account, App, Assignment, Member, Person},
     problem::Problem,
@@ -277,7 +277,7 @@ pub(super) async fn wrong_method(method: Method) -> Problem {
 async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
     let person = Person::from_request_parts(head, app).await.ok()?;
     let frame = PageFrame::for_account(&person.account);
-    let Ok(at) = PathParameters::from_request_parts(head, app).await else { return Some(frame) };
+    let Ok(at) = UrlPathParts::from_request_parts(head, app).await else { return Some(frame) };
     let Ok(member) = person.into_member(&at.course).await else { return Some(frame) };
     let assignment = member.assignment(&at.assignment).await;
     Some(assignment.map_or_else(|_| PageFrame::course(&member), |found| PageFrame::assignment(&member, &found)))

@@ -2,7 +2,7 @@
 use super::{
     super::{
         identification::browser_cookie,
-        input::{Fields, PathParameters},
+        input::{Fields, UrlPathParts},
     },
     Page, PageFrame, course, render, sign_in, text,
 };
@@ -183,14 +183,14 @@ pub(super) async fn send_configuration(State(app): State<App>) -> Json<Value> {
     }))
 }
 
-pub(super) async fn show_choice(person: Person, PathParameters { secret, .. }: PathParameters) -> Page {
+pub(super) async fn show_choice(person: Person, UrlPathParts { secret, .. }: UrlPathParts) -> Page {
     let (choice, app) = (person.choice(&secret).await?, &person.app);
     render(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice, suites: &app.suites })
 }
 
 pub(super) async fn choose_assignment(
     person: Person,
-    PathParameters { secret, .. }: PathParameters,
+    UrlPathParts { secret, .. }: UrlPathParts,
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
     let mut slug = choice.assignment;
@@ -199,7 +199,7 @@ pub(super) async fn choose_assignment(
         let LinkTarget::Assignment { course, .. } = person.choice(&secret).await? else {
             return Err(Problem::not_found("course"));
         };
-        let staff = person.clone().into_member(&course.slug).await?.staff()?;
+        let staff = person.clone().into_member(&course.slug).await?.into_staff()?;
         course::create_assignment(&staff, &slug, choice.title.trim(), &choice.suite).await?;
     }
     match person.choose_assignment(&secret, &slug).await? {

@@ -1,5 +1,5 @@
 //! The pages that remove something permanently. Their forms list what is removed, and require its name as confirmation.
-use super::super::input::{Fields, PathParameters};
+use super::super::input::{Fields, UrlPathParts};
 use crate::{
     domain::{Admin, Staff},
     problem::{Problem, ensure},

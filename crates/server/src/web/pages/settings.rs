@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{self, Revision},
-        input::{Fields, PathParameters, QueryInput},
+        input::{Fields, QueryInput, UrlPathParts},
     },
     Page, PageFrame, render, text,
 };
@@ -155,7 +155,7 @@ pub(super) fn read_due_date(field: &str, zone: &str, before: Option<i64>) -> Res
     Ok(unchanged.or(Some(time)))
 }
 
-pub(super) async fn show_page(staff: Staff, PathParameters { course: slug, assignment, .. }: PathParameters) -> Page {
+pub(super) async fn show_page(staff: Staff, UrlPathParts { course: slug, assignment, .. }: UrlPathParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
     let frame = PageFrame::assignment(&staff, &assignment).with_parent(address, "Settings");
@@ -166,7 +166,7 @@ pub(super) async fn show_page(staff: Staff, PathParameters { course: slug, assig
 
 pub(super) async fn save(
     staff: Staff,
-    PathParameters { course: slug, assignment, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
     // This form changes only existing assignments, so that a mistyped URL does not create one.
@@ -181,7 +181,7 @@ pub(super) async fn save(
 
 pub(super) async fn set_suite(
     staff: Staff,
-    PathParameters { course: slug, assignment, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
     QueryInput(query): QueryInput<Revision>,
     request: Request,
 ) -> Result<Redirect, Problem> {

@@ -2,7 +2,7 @@
 use super::{
     super::{
         guard::{SESSION_SECONDS, session_cookie},
-        input::{Fields, PathParameters, QueryInput},
+        input::{Fields, QueryInput, UrlPathParts},
     },
     Page, PageFrame, render,
 };
@@ -124,16 +124,13 @@ pub(super) async fn sign_in_by_token(visitor: Visitor, Fields(form): Fields<Toke
 pub(super) async fn show_welcome(
     visitor: Visitor,
     person: Result<Person, Problem>,
-    PathParameters { secret, .. }: PathParameters,
+    UrlPathParts { secret, .. }: UrlPathParts,
 ) -> Page {
     let frame = person.map_or_else(|_| PageFrame::default(), |person| PageFrame::for_account(&person.account));
     render(&WelcomePage { frame, owner: visitor.link_owner(&secret).await? })
 }
 
-pub(super) async fn use_link(
-    visitor: Visitor,
-    PathParameters { secret, .. }: PathParameters,
-) -> Result<Response, Problem> {
+pub(super) async fn use_link(visitor: Visitor, UrlPathParts { secret, .. }: UrlPathParts) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
     Ok(start_session(&visitor.app, &session, "/"))
 }

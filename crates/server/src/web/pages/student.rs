@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{ReviewRequest, write_csv},
-        input::{Fields, PathParameters},
+        input::{Fields, UrlPathParts},
         upload,
     },
     Page, PageFrame, grades, render, scenes,
@@ -96,7 +96,7 @@ pub(super) struct ImportedTable {
     seen: Option<i64>,
 }
 
-pub(super) async fn show(staff: Staff, PathParameters { course: slug, assignment, login, .. }: PathParameters) -> Page {
+pub(super) async fn show(staff: Staff, UrlPathParts { course: slug, assignment, login, .. }: UrlPathParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     // Read the ID of the newest event before the submissions, so that later changes are detected.
     let seen_event = staff.last_event().await?;

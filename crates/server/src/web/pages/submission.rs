@@ -1,6 +1,6 @@
 //! The page for submitting, and the page of a submission with its result.
 use super::{
-    super::{api, input::PathParameters},
+    super::{api, input::UrlPathParts},
     Page, PageFrame,
     course::OwnWork,
     render, report, scenes, text,
@@ -45,7 +45,7 @@ struct SubmissionPage {
     report: Option<String>,
 }
 
-pub(super) async fn show_assignment(member: Member, PathParameters { assignment, .. }: PathParameters) -> Page {
+pub(super) async fn show_assignment(member: Member, UrlPathParts { assignment, .. }: UrlPathParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
     let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
     let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Submit");
@@ -55,7 +55,7 @@ pub(super) async fn show_assignment(member: Member, PathParameters { assignment,
 
 pub(super) async fn submit(
     member: Member,
-    PathParameters { course: slug, assignment, .. }: PathParameters,
+    UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
     request: Request,
 ) -> Result<Redirect, Problem> {
     let result = api::receive(&member, &assignment, request, None, None, None).await?;
@@ -77,7 +77,7 @@ fn submission_frame(member: &Member, assignment: Option<&Assignment>, submission
     frame.with_parent(address, &format!("Submission {}", submission.number))
 }
 
-pub(super) async fn show_submission(member: Member, PathParameters { id, .. }: PathParameters) -> Page {
+pub(super) async fn show_submission(member: Member, UrlPathParts { id, .. }: UrlPathParts) -> Page {
     let submission = member.submission(id).await?;
     // The member may not see the assignment any more.
     let assignment = member.assignments().await?.into_iter().find(|one| one.slug == submission.assignment);

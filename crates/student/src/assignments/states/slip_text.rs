@@ -17,6 +17,26 @@ impl Slip {
             Self::Length(by) => power("length", by),
             Self::Iterations(count) => format!("iterations-{count}"),
             Self::Loose(digits) => format!("loose-{digits}"),
+            // Published ids stay when a variant gets another name.
+            Self::FixedNotMoved => "fixed-stand".to_owned(),
+            Self::FixedVelocityZeroedFirst => "fixed-stopped".to_owned(),
+            Self::FixedVelocityZeroedAfter => "fixed-halted".to_owned(),
+            Self::NotNormalized => "undivided".to_owned(),
+            Self::SameNormalBehind => "one-sided".to_owned(),
+            Self::NormalAsGiven => "one-sided-long".to_owned(),
+            Self::OppositeNormalInFront => "one-sided-back".to_owned(),
+            Self::SquaredWithSign => "squared-away".to_owned(),
+            Self::WithoutFirstParticle => "first-out".to_owned(),
+            Self::WithoutLastParticle => "last-out".to_owned(),
+            Self::OnlyFirstParticle => "only-first".to_owned(),
+            Self::WholeVelocity => "whole".to_owned(),
+            Self::IgnoresSlowApproach => "margin".to_owned(),
+            Self::SharesNotSquared => "unsquared".to_owned(),
+            Self::FixedUnchanged => "fixed-spared".to_owned(),
+            Self::OneBlockOffDiagonal => "one-half".to_owned(),
+            Self::ForcesAfterMove => "behind".to_owned(),
+            Self::NothingBeyondEnds => "ends-out".to_owned(),
+            Self::Normalized => "unit".to_owned(),
             other => {
                 let name = format!("{other:?}");
                 name.chars().enumerate().fold(String::new(), |mut id, (index, letter)| {

@@ -24,7 +24,7 @@ slips! {
     Absolute "loses its sign by an absolute value";
     Squared "grows with the square of the stretch or depth, whatever its sign";
     SquaredHalf "is half of a square, as in the energy";
-    SquaredAway "grows with the square of the depth";
+    SquaredWithSign "grows with the square of the depth";
     /// Multiplies the term by this power of the mass.
     Mass(i8) "has another factor";
     /// Multiplies the term by this power of the step size.
@@ -43,14 +43,14 @@ slips! {
     FirstOnly "acts only on the first of its bodies";
     SecondOnly "does not act on the first of its bodies";
     SameSign "has the same direction for both bodies instead of opposite ones";
-    FirstOut "omits the first particle";
-    LastOut "omits the last particle";
-    OnlyFirst "acts only on the first particle";
+    WithoutFirstParticle "omits the first particle";
+    WithoutLastParticle "omits the last particle";
+    OnlyFirstParticle "acts only on the first particle";
     FixedForgotten "treats fixed particles like free ones";
-    FixedStand "does not move fixed particles, even those with a velocity";
-    FixedStopped "sets the velocity of fixed particles to zero, so they do not move";
-    FixedHalted "sets the velocity of fixed particles to zero once they have moved";
-    Behind "uses the forces after the positions have moved instead of before";
+    FixedNotMoved "does not move fixed particles, even those with a velocity";
+    FixedVelocityZeroedFirst "sets the velocity of fixed particles to zero, so they do not move";
+    FixedVelocityZeroedAfter "sets the velocity of fixed particles to zero once they have moved";
+    ForcesAfterMove "uses the forces after the positions have moved instead of before";
     NotCleared "contains the forces of all earlier steps, because the sum is not cleared";
     MatrixSign "has the derivatives with the wrong sign in its matrix";
     RowsOfFixed "leaves the rows and columns of fixed particles in its matrix";
@@ -64,10 +64,10 @@ slips! {
     MeanVelocity "uses the mean of the old and the new velocity";
     DiagonalOnly "lacks the blocks off the diagonal";
     OffDiagonalSign "has the wrong sign off the diagonal";
-    OneHalf "lacks one of its two blocks off the diagonal";
+    OneBlockOffDiagonal "lacks one of its two blocks off the diagonal";
     OtherMatrix "is added to the wrong matrix";
     NotStrict "counts equality, too";
-    Margin "ignores slow approaches";
+    IgnoresSlowApproach "ignores slow approaches";
     EndRadius "uses the radius of the edge's first end instead of the edge's own";
     FirstRadius "uses the radius of the first edge for all edges";
     Unclamped "uses the closest point of the whole line, even beyond the ends of the edge";
@@ -76,13 +76,13 @@ slips! {
     Truncated "cuts alpha to a whole number, as an integer variable does";
     Rounded "uses the nearer end of the edge instead of its closest point";
     Middle "uses the middle of the edge instead of its closest point";
-    EndsOut "finds nothing beyond the ends of an edge";
+    NothingBeyondEnds "finds nothing beyond the ends of an edge";
     ToPoint "uses the point that defines the half-plane instead of its closest point";
-    Undivided "does not normalize the half-plane's normal";
-    OneSided "has the direction of the half-plane's normal on both sides of it";
-    OneSidedLong "uses the half-plane's normal without normalizing it, and keeps its sign behind the half-plane";
-    OneSidedBack "has the opposite direction of the half-plane's normal on both sides of it";
-    Unit "is normalized, although its length must be the distance";
+    NotNormalized "does not normalize the half-plane's normal";
+    SameNormalBehind "has the direction of the half-plane's normal on both sides of it";
+    NormalAsGiven "uses the half-plane's normal without normalizing it, and keeps its sign behind the half-plane";
+    OppositeNormalInFront "has the opposite direction of the half-plane's normal on both sides of it";
+    Normalized "is normalized, although its length must be the distance";
     NoFactor "uses one as the coefficient of restitution";
     Inelastic "uses zero as the coefficient of restitution";
     RestitutionOnly "uses the coefficient of restitution without adding one";
@@ -96,11 +96,11 @@ slips! {
     SwappedMasses "exchanges the masses";
     FixedFinite "uses the mass of a fixed particle instead of an infinite mass";
     FixedAsFree "treats fixed particles like free ones, with their mass";
-    FixedSpared "does not change fixed particles, which the assignment does not require here";
+    FixedUnchanged "does not change fixed particles, which the assignment does not require here";
     Sequential "computes later changes with already changed velocities";
     StartVelocity "uses the velocities before the pass instead of those after earlier pairs";
-    Whole "changes the whole velocity instead of its part along the normal";
-    Unsquared "does not square the shares of the ends in the weighted masses";
+    WholeVelocity "changes the whole velocity instead of its part along the normal";
+    SharesNotSquared "does not square the shares of the ends in the weighted masses";
     FullShares "acts on each end of the edge as if it were the only one";
     SharesExchanged "exchanges the shares of the edge's ends";
     EqualShares "is shared equally between the ends of the edge";
@@ -112,7 +112,7 @@ pub(super) const SUM: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::Doubled, Slip
 /// The slips of a vector.
 pub(super) const VECTOR: &[Slip] = &[Slip::XOnly, Slip::YOnly, Slip::Exchanged];
 /// The slips of quantities for each particle.
-pub(super) const EACH: &[Slip] = &[Slip::FirstOut, Slip::LastOut, Slip::OnlyFirst];
+pub(super) const EACH: &[Slip] = &[Slip::WithoutFirstParticle, Slip::WithoutLastParticle, Slip::OnlyFirstParticle];
 /// The slips of the force on each particle.
 pub(super) const FORCE: &[Slip] = &[Slip::Assigned, Slip::Mass(1), Slip::Mass(-1), Slip::Step(1)];
 /// The slips of quantities for two bodies.
@@ -122,17 +122,23 @@ pub(super) const NUMBER: &[Slip] = &[Slip::Absolute, Slip::Squared, Slip::Square
 /// The slips of quantities that depend on the distance.
 pub(super) const DISTANCE: &[Slip] = &[Slip::Length(1), Slip::Length(2), Slip::Length(-1)];
 /// The slips of matrix blocks for two bodies.
-pub(super) const BLOCKS: &[Slip] =
-    &[Slip::DiagonalOnly, Slip::OffDiagonalSign, Slip::OneHalf, Slip::FirstOnly, Slip::SecondOnly, Slip::Assigned];
+pub(super) const BLOCKS: &[Slip] = &[
+    Slip::DiagonalOnly,
+    Slip::OffDiagonalSign,
+    Slip::OneBlockOffDiagonal,
+    Slip::FirstOnly,
+    Slip::SecondOnly,
+    Slip::Assigned,
+];
 
 impl Slip {
     /// Returns whether bodies without a force remain unaffected.
     pub fn keeps_distance(self) -> bool {
         use Slip::{
-            Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, Rounded, ToPoint, Truncated, Unclamped,
-            Undivided,
+            Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, NotNormalized, Rounded, ToPoint, Truncated,
+            Unclamped,
         };
         let moves_point = matches!(self, Middle | Mirrored | Negated | Rounded | ToPoint | Truncated | Unclamped);
-        !moves_point && !matches!(self, Always | EndRadius | FirstRadius | Undivided)
+        !moves_point && !matches!(self, Always | EndRadius | FirstRadius | NotNormalized)
     }
 }

@@ -55,8 +55,13 @@ const VELOCITIES: &[&[Slip]] = &[
     &[Slip::XForBoth, Slip::YForBoth, Slip::Step(-1), Slip::Step(1), Slip::Mass(1), Slip::Mass(2), Slip::Mass(-1)],
     &[Slip::MassOfFirst, Slip::MassIndex, Slip::Assigned],
 ];
-const STEP: &[&[Slip]] =
-    &[&[Slip::Missing, Slip::FixedForgotten, Slip::FixedStand, Slip::FixedStopped, Slip::FixedHalted]];
+const STEP: &[&[Slip]] = &[&[
+    Slip::Missing,
+    Slip::FixedForgotten,
+    Slip::FixedNotMoved,
+    Slip::FixedVelocityZeroedFirst,
+    Slip::FixedVelocityZeroedAfter,
+]];
 const SYSTEM: &[&[Slip]] =
     &[STEP[0], &[Slip::MatrixSign, Slip::RowsOfFixed, Slip::DiagonalOfFixed, Slip::RightOfFixed]];
 const MATRIX: &[&[Slip]] = &[SUM, &[Slip::Step(1), Slip::Step(-1), Slip::Step(-2)]];
@@ -68,12 +73,12 @@ const PENALTY: &[&[Slip]] = &[
     THICKNESS,
     &[Slip::NoOtherRadius],
     PAIR,
-    &[Slip::Always, Slip::Squared, Slip::SquaredAway, Slip::Length(1), Slip::Assigned],
+    &[Slip::Always, Slip::Squared, Slip::SquaredWithSign, Slip::Length(1), Slip::Assigned],
 ];
 const WHOLE_PENALTY: &[&[Slip]] =
     &[&[Slip::Sign, Slip::Doubled, Slip::Halved, Slip::NoFactor, Slip::ThicknessInTest, Slip::SameSign], PENALTY[4]];
 const ALPHA: &[Slip] = &[Slip::Unclamped, Slip::Mirrored, Slip::Middle, Slip::Negated, Slip::Truncated, Slip::Rounded];
-const NORMAL: &[Slip] = &[Slip::Sign, Slip::Unit, Slip::Doubled, Slip::Halved];
+const NORMAL: &[Slip] = &[Slip::Sign, Slip::Normalized, Slip::Doubled, Slip::Halved];
 const APPROACH: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::NotStrict];
 const RESPONSE: &[Slip] = &[
     Slip::Missing,
@@ -171,7 +176,7 @@ terms! {
             POSITIONS;
         SymplecticVelocities "symplectic-velocities" "The change of velocity in symplectic Euler": "h F / m" [-1 1 0]
             false &[VELOCITIES[0], VELOCITIES[1], VELOCITIES[2], VELOCITIES[3], VELOCITIES[4],
-            &[Slip::Behind, Slip::NotCleared] ];
+            &[Slip::ForcesAfterMove, Slip::NotCleared] ];
     }
     Part::Integrator(Integrator::LinearizedImplicitEuler) => {
         Linear "linear" "Linearized implicit Euler": "(M + h Hv + h^2 Hx) dv = h F, v += dv, x += h v" [0 0 0] true
@@ -221,7 +226,8 @@ terms! {
     Part::Penalty(PairKind::ParticleHalfPlane) => {
         PenaltyHalfPlanes "penalty-half-planes" "The penalty force between a particle and a half-plane":
             "k (|n| - r_i - h) u" [0 0 0] true &[SUM, THICKNESS, PENALTY[4],
-            &[Slip::Undivided, Slip::OneSided, Slip::OneSidedLong, Slip::OneSidedBack, Slip::ToPoint] ];
+            &[Slip::NotNormalized, Slip::SameNormalBehind, Slip::NormalAsGiven, Slip::OppositeNormalInFront,
+            Slip::ToPoint] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         DetectParticles "detect-particles" "The collision detection of two particles":
@@ -245,20 +251,21 @@ terms! {
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
         OverlapHalfPlanes "overlap-half-planes" "The test of overlap between a particle and a half-plane": "|n| < r"
-            [0 0 0] false &[APPROACH, &[Slip::OneSided] ];
+            [0 0 0] false &[APPROACH, &[Slip::SameNormalBehind] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         ApproachParticles "approach-particles" "The test of approach between two particles": "(v_1 - v_2) . n > 0"
-            [0 0 0] false &[APPROACH, &[Slip::Margin, Slip::FirstOnly, Slip::SecondOnly] ];
+            [0 0 0] false &[APPROACH, &[Slip::IgnoresSlowApproach, Slip::FirstOnly, Slip::SecondOnly] ];
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
         ApproachEdges "approach-edges" "The test of approach between a particle and an edge":
             "(v_1 - (v_2 + alpha (v_3 - v_2))) . n > 0" [0 0 0] false &[APPROACH,
-            &[Slip::Margin, Slip::FirstOnly, Slip::SecondOnly, Slip::Middle, Slip::Mirrored, Slip::Unclamped] ];
+            &[Slip::IgnoresSlowApproach, Slip::FirstOnly, Slip::SecondOnly, Slip::Middle, Slip::Mirrored,
+            Slip::Unclamped] ];
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
         ApproachHalfPlanes "approach-half-planes" "The test of approach between a particle and a half-plane":
-            "v . n > 0" [0 0 0] false &[APPROACH, &[Slip::Margin] ];
+            "v . n > 0" [0 0 0] false &[APPROACH, &[Slip::IgnoresSlowApproach] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         NormalParticles "normal-particles" "The contact vector between two particles": "n = x_2 - x_1" [0 0 0] false
@@ -270,12 +277,12 @@ terms! {
     }
     Part::SimpleDetection(PairKind::ParticleHalfPlane) => {
         NormalHalfPlanes "normal-half-planes" "The contact vector between a particle and a half-plane":
-            "n = ((x_p - x) . q) / (q . q) q" [0 0 0] false &[NORMAL, &[Slip::ToPoint, Slip::Undivided] ];
+            "n = ((x_p - x) . q) / (q . q) q" [0 0 0] false &[NORMAL, &[Slip::ToPoint, Slip::NotNormalized] ];
     }
     Part::SimpleDetection(PairKind::ParticleEdge) => {
         ClosestPoint "closest-point" "The collision detection of a particle with an edge":
             "alpha = (x_1 - x_2) . (x_3 - x_2) / |x_3 - x_2|^2, not below 0 and not above 1" [0 0 0] false &[ALPHA,
-            &[Slip::EndsOut] ];
+            &[Slip::NothingBeyondEnds] ];
     }
     Part::SimpleResponse(PairKind::ParticleParticle) => {
         RespondParticles "respond-particles" "The response between two particles":
@@ -285,13 +292,13 @@ terms! {
     Part::SimpleResponse(PairKind::ParticleEdge) => {
         RespondEdges "respond-edges" "The response between a particle and an edge":
             "(1 + COR) ((v_e - v_1) . u) u, with shares 1 - alpha and alpha" [0 0 0] true &[RESPONSE, BODIES, ALPHA,
-            &[Slip::Unsquared, Slip::SharesExchanged, Slip::FullShares, Slip::EqualShares, Slip::OneEnd] ];
+            &[Slip::SharesNotSquared, Slip::SharesExchanged, Slip::FullShares, Slip::EqualShares, Slip::OneEnd] ];
         RespondEdgeStill "respond-edge-still" "The velocity of the edge in the response": "v_2 + alpha (v_3 - v_2)"
             [0 0 0] false &[&[Slip::Missing, Slip::Middle]];
     }
     Part::SimpleResponse(PairKind::ParticleHalfPlane) => {
         RespondHalfPlanes "respond-half-planes" "The response between a particle and a half-plane":
-            "v -= (1 + COR) (v . u) u" [0 0 0] true &[RESPONSE, &[Slip::Whole, Slip::FixedSpared] ];
+            "v -= (1 + COR) (v . u) u" [0 0 0] true &[RESPONSE, &[Slip::WholeVelocity, Slip::FixedUnchanged] ];
     }
 }
 
