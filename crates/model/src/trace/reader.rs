@@ -125,14 +125,14 @@ impl<R: Read> Reader<R> {
         let (record, list) = (self.record_count() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {
             let offset = list + number * RecordList::Impulses.entry_bytes();
-            Some(TraceError::new(self.layout, record, offset, self.find_malformation(number, impulse)?))
+            Some(TraceError::new(self.layout, record, offset, self.find_format_error(number, impulse)?))
         });
         let odd: Vec<_> = odd.take(MAX_NOTES).collect();
         self.notes.extend(odd);
     }
 
     /// Returns the oddity of an impulse, if it has one.
-    fn find_malformation(&self, number: u64, impulse: &LoggedImpulse) -> Option<TraceFormatError> {
+    fn find_format_error(&self, number: u64, impulse: &LoggedImpulse) -> Option<TraceFormatError> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {
             return Some(TraceFormatError::UnknownKind { impulse: number, kind: impulse.kind });
