@@ -10,7 +10,7 @@ use anyhow::Result;
 use std::path::Path;
 
 /// The folder for the pictures that `-g 1` requests.
-const PICTURE_FOLDER: &str = "pngs";
+const PNG_FOLDER: &str = "pngs";
 
 /// The width and the height of the pictures, in pixels.
 const PICTURE_SIDE: u32 = 512;
@@ -24,12 +24,12 @@ impl Services for CliServices {
     }
 
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
-        let png = match Folder::open_existing(Path::new(PICTURE_FOLDER)) {
+        let png = match Folder::open_existing(Path::new(PNG_FOLDER)) {
             _ if !png => None,
             // The original aborts in this case.
             None => {
                 return Err(format!(
-                    "Error opening {PICTURE_FOLDER}/frame00001.png: there is no folder {PICTURE_FOLDER}; create it first\n"
+                    "Error opening {PNG_FOLDER}/frame00001.png: there is no folder {PNG_FOLDER}; create it first\n"
                 ));
             }
             found => found,

@@ -93,7 +93,7 @@ impl SimplePass<'_> {
     fn contact_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
-            Slip::Normalized => unit(n),
+            Slip::Unit => unit(n),
             Slip::Doubled => 2.0 * n,
             Slip::Halved => 0.5 * n,
             _ => n,

@@ -114,9 +114,9 @@ impl Pages {
 }
 
 /// The sentence above the card of a trace that was compared with a recording.
-const RECORDING_NOTE: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
-                        differs. The steps below are judged from the trace's own state before each step, to show \
-                        which ones are wrong by themselves, and which only follow from others.";
+const RECORDING_NOTE: &str = "The verdict compares with the recording, where nearly everything after the first wrong \
+    step differs. The steps below are judged from the trace's own state before each step, to show which ones are \
+    wrong by themselves, and which only follow from others.";
 
 /// Draws the card of a graded scene. If the trace was compared with a recording, each step is judged again for the
 /// card, from the trace's own state.

@@ -46,9 +46,11 @@ axis!(EdgeMotion, "edge's motion": Still = "none", Shifted = "shifted", Turned =
 axis!(Side, "side": Front = "in front", Behind = "behind");
 axis!(Normal, "normal": Unit = "of length 1", Other = "of another length");
 axis!(Size, "particles": One = "1", Two = "2", Three = "3", More = "4 or more");
-axis!(ZoneAnchor, "held by": Nothing = "nothing", Fixed = "a fixed particle", HalfPlane = "a half-plane", Both = "both");
+axis!(ZoneAnchor, "held by": Nothing = "nothing", Fixed = "a fixed particle", HalfPlane = "a half-plane",
+    Both = "both");
 axis!(Motion, "motion": Rests = "rests", Shifts = "shifts only", Turns = "turns");
-axis!(ZoneOrigin, "zone is": First = "of the first round", New = "new in a later round", Grown = "grown", Same = "as before");
+axis!(ZoneOrigin, "zone is": First = "of the first round", New = "new in a later round", Grown = "grown",
+    Same = "as before");
 axis!(Position, "place in the list": Only = "the only one", First = "first", Between = "in between", Last = "last");
 axis!(ZoneEdge, "edge in it": None = "none", Next = "j = i + 1", Previous = "j = i - 1", Apart = "|j - i| > 1");
 axis!(Links, "contacts": One = "one", Several = "several");
@@ -60,9 +62,8 @@ axis!(LoopEnd, "impulses": Nothing = "nothing collides", Within = "end before th
     JustEnough = "the last round finds nothing", RunOut = "the limit is reached", NotAllowed = "the limit is 0");
 axis!(ZoneCount, "zones": None = "none", One = "one", Several = "several");
 axis!(Rounds, "rounds of zones": None = "none", One = "1", Two = "2", More = "3 or more");
-axis!(NoContactReason, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second \
-    end",
-    Late = "too late", Never = "they never meet");
+axis!(NoContactReason, "why not": Parting = "they part", BesideFirst = "beside the first end",
+    BesideSecond = "beside the second end", Late = "too late", Never = "they never meet");
 axis!(Kind, "pair": Particles = "two particles", Edge = "a particle and an edge",
     HalfPlane = "a particle and a half-plane");
 axis!(SomeFixed, "fixed": None = "none", Some = "some", All = "all");

@@ -36,17 +36,13 @@ impl Slip {
             Self::OneBlockOffDiagonal => "one-half".to_owned(),
             Self::ForcesAfterMove => "behind".to_owned(),
             Self::NothingBeyondEnds => "ends-out".to_owned(),
-            Self::Normalized => "unit".to_owned(),
-            other => {
-                let name = format!("{other:?}");
-                name.chars().enumerate().fold(String::new(), |mut id, (index, letter)| {
-                    if letter.is_uppercase() && index > 0 {
-                        id.push('-');
-                    }
-                    id.push(letter.to_ascii_lowercase());
-                    id
-                })
-            }
+            other => format!("{other:?}").chars().enumerate().fold(String::new(), |mut id, (index, letter)| {
+                if letter.is_uppercase() && index > 0 {
+                    id.push('-');
+                }
+                id.push(letter.to_ascii_lowercase());
+                id
+            }),
         }
     }
 

@@ -82,7 +82,7 @@ slips! {
     SameNormalBehind "has the direction of the half-plane's normal on both sides of it";
     NormalAsGiven "uses the half-plane's normal without normalizing it, and keeps its sign behind the half-plane";
     OppositeNormalInFront "has the opposite direction of the half-plane's normal on both sides of it";
-    Normalized "is normalized, although its length must be the distance";
+    Unit "is normalized, although its length must be the distance";
     NoFactor "uses one as the coefficient of restitution";
     Inelastic "uses zero as the coefficient of restitution";
     RestitutionOnly "uses the coefficient of restitution without adding one";

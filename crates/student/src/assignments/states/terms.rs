@@ -78,7 +78,7 @@ const PENALTY: &[&[Slip]] = &[
 const WHOLE_PENALTY: &[&[Slip]] =
     &[&[Slip::Sign, Slip::Doubled, Slip::Halved, Slip::NoFactor, Slip::ThicknessInTest, Slip::SameSign], PENALTY[4]];
 const ALPHA: &[Slip] = &[Slip::Unclamped, Slip::Mirrored, Slip::Middle, Slip::Negated, Slip::Truncated, Slip::Rounded];
-const NORMAL: &[Slip] = &[Slip::Sign, Slip::Normalized, Slip::Doubled, Slip::Halved];
+const NORMAL: &[Slip] = &[Slip::Sign, Slip::Unit, Slip::Doubled, Slip::Halved];
 const APPROACH: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::NotStrict];
 const RESPONSE: &[Slip] = &[
     Slip::Missing,
