@@ -549,7 +549,7 @@ impl FromRow for Assignment {
 }
 
 /// An entry of the audit log.
-pub(super) struct Entry<'a> {
+pub(super) struct LogEntry<'a> {
     pub(super) kind: &'static str,
     /// The account of the person who did it; `None` for the server.
     pub(super) actor: Option<i64>,
@@ -559,7 +559,7 @@ pub(super) struct Entry<'a> {
     pub(super) text: &'a str,
 }
 
-impl<'a> Entry<'a> {
+impl<'a> LogEntry<'a> {
     /// Creates an entry without a course or a submission.
     pub(super) fn new(kind: &'static str, actor: impl Into<Option<i64>>, text: &'a str) -> Self {
         Self { kind, actor: actor.into(), course: None, assignment: None, submission: None, text }
@@ -567,10 +567,10 @@ impl<'a> Entry<'a> {
 }
 
 /// Writes an entry into the audit log.
-pub(super) async fn log_event(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
+pub(super) async fn log_event(transaction: &mut Transaction, entry: &LogEntry<'_>) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
-    let Entry { kind, actor, course, assignment, submission, text } = *entry;
+    let LogEntry { kind, actor, course, assignment, submission, text } = *entry;
     transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 

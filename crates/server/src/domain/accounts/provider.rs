@@ -9,7 +9,7 @@ use crate::{
             newcomer::Newcomer,
             pending_sign_in::UNKNOWN_SIGN_IN,
         },
-        view::{self, Entry},
+        view::{self, LogEntry},
     },
     oidc::{Provider, ProviderFault, ProviderPerson, SignInSecrets},
     problem::{Problem, ensure},
@@ -132,7 +132,7 @@ async fn connect(
 
 async fn log(transaction: &mut Transaction, provider: &Provider, account: i64, login: &str) -> Result<(), Problem> {
     let text = format!("connected {login} to {}", provider.label);
-    Ok(view::log_event(transaction, &Entry::new("account", account, &text)).await?)
+    Ok(view::log_event(transaction, &LogEntry::new("account", account, &text)).await?)
 }
 
 /// Finds or creates the account of a person who signs in.

@@ -35,7 +35,7 @@ impl App {
             let settings = Settings::default().validate(&self.suites)?;
             let course = admin::make_course(&mut transaction, COURSE).await?;
             let text = format!("{} ({}), as --example asks", COURSE.0, COURSE.1);
-            view::log_event(&mut transaction, &view::Entry::new("course", None, &text)).await?;
+            view::log_event(&mut transaction, &view::LogEntry::new("course", None, &text)).await?;
             let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
                 VALUES (?, ?, ?, 1, ?, {now})";
             transaction.execute(statement, values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.to_json()]).await?;

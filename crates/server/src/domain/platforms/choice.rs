@@ -4,7 +4,7 @@ use crate::domain::{
     Member, Person,
     platforms::launch,
     roles::admin,
-    view::{self, Assignment, Course, Entry},
+    view::{self, Assignment, Course, LogEntry},
 };
 use crate::{
     db::DbError,
@@ -126,7 +126,7 @@ impl Person {
             ON CONFLICT (course, account) DO NOTHING";
         transaction.execute(statement, values![course, self.account.id, LtiRole::Staff.name(), platform]).await?;
         let text = format!("linked to the course {} on {}", arrival.context.id, pending.platform.name);
-        let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
+        let entry = LogEntry { course: Some(course), ..LogEntry::new("platform", self.account.id, &text) };
         view::log_event(&mut transaction, &entry).await?;
         Ok(transaction.commit().await?)
     }
@@ -151,8 +151,8 @@ impl Person {
         let arrival = &pending.arrival;
         let text = format!("linked {} from {}", assignment.slug, pending.platform.name);
         let (course, assignment_id) = (Some(known_course.course), Some(assignment.id));
-        let entry = Entry::new("platform", self.account.id, &text);
-        view::log_event(&mut transaction, &Entry { course, assignment: assignment_id, ..entry }).await?;
+        let entry = LogEntry::new("platform", self.account.id, &text);
+        view::log_event(&mut transaction, &LogEntry { course, assignment: assignment_id, ..entry }).await?;
         let Some(wanted) = &arrival.deep_linking else {
             let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
             let link = launch::make_link(&mut transaction, known_course.id, &resource.id, assignment.id).await?;

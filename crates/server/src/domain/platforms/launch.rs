@@ -8,7 +8,7 @@ use crate::domain::{
         newcomer::Newcomer,
         pending_sign_in::{StartedSignIn, UNKNOWN_SIGN_IN},
     },
-    view::{self, Entry},
+    view::{self, LogEntry},
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
@@ -356,7 +356,7 @@ pub(in crate::domain) async fn enroll(
     transaction.execute(statement, values![course, account, role.name(), platform]).await?;
     let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
     let text = format!("learning platform: {login} became {}", role.name());
-    view::log_event(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
+    view::log_event(transaction, &LogEntry { course: Some(course), ..LogEntry::new("member", account, &text) }).await
 }
 
 /// A choice that a member of staff must make.

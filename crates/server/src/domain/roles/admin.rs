@@ -3,7 +3,7 @@ use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, SignInMethod, TokenInfo},
     courses::members::PEOPLE_PER_PAGE,
-    view::{self, Account, Course, Entry, Event, EventQuery, Queue},
+    view::{self, Account, Course, Event, EventQuery, LogEntry, Queue},
 };
 use crate::{
     db::{DbError, Transaction, from_row},
@@ -63,7 +63,7 @@ impl Admin {
         kind: &'static str,
         text: &str,
     ) -> Result<(), DbError> {
-        view::log_event(transaction, &Entry::new(kind, self.account.id, text)).await
+        view::log_event(transaction, &LogEntry::new(kind, self.account.id, text)).await
     }
 
     /// Creates a course.
@@ -231,7 +231,7 @@ impl App {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.0.database.begin().await?;
         let token = identity::new_token(&mut transaction, None, name, creator, SignInMethod::Own).await?;
-        view::log_event(&mut transaction, &Entry::new("worker token", creator, &format!("created {name}"))).await?;
+        view::log_event(&mut transaction, &LogEntry::new("worker token", creator, &format!("created {name}"))).await?;
         transaction.commit().await?;
         Ok(token)
     }
@@ -259,7 +259,7 @@ impl App {
             ON CONFLICT (login) DO NOTHING";
         if transaction.execute(statement, values![]).await? > 0 {
             let text = "created the first administrator, admin; printed a sign-in link";
-            view::log_event(&mut transaction, &Entry::new("account", None, text)).await?;
+            view::log_event(&mut transaction, &LogEntry::new("account", None, text)).await?;
         }
         let statement = "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
             WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL";

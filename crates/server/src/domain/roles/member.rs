@@ -1,7 +1,7 @@
 //! A member of a course. Students see only their own submissions; staff see all submissions of the course.
 use crate::domain::{
     App,
-    view::{self, Account, Assignment, Entry, History, Submission},
+    view::{self, Account, Assignment, History, LogEntry, Submission},
 };
 use crate::{
     db::{DbError, Transaction},
@@ -29,8 +29,13 @@ pub struct Member {
 
 impl Member {
     /// Creates an entry for the course's audit log, in this member's name.
-    pub(in crate::domain) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
-        Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
+    pub(in crate::domain) fn entry<'a>(
+        &self,
+        kind: &'static str,
+        assignment: Option<i64>,
+        text: &'a str,
+    ) -> LogEntry<'a> {
+        LogEntry { course: Some(self.course), assignment, ..LogEntry::new(kind, self.account.id, text) }
     }
 
     /// Returns the assignments that the member may see.

@@ -2,7 +2,7 @@
 use crate::domain::{
     Member, Staff,
     accounts::identity,
-    view::{self, Assignment, Entry, Submission},
+    view::{self, Assignment, LogEntry, Submission},
 };
 use crate::{
     calendar,
@@ -135,7 +135,7 @@ impl Staff {
             None => format!("restored the grader's points: {comment}"),
         };
         let entry = self.entry("marked", None, &text);
-        view::log_event(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        view::log_event(&mut transaction, &LogEntry { submission: Some(id), ..entry }).await?;
         score::queue_changed_scores(&mut transaction, id).await?;
         self.app.0.notifier.commit(transaction).await?;
         self.submission(id).await

@@ -2,7 +2,7 @@
 use crate::domain::{
     Staff,
     submissions::bulk_enqueue::enqueue_replaced,
-    view::{self, Entry},
+    view::{self, LogEntry},
 };
 use crate::{
     problem::{Problem, ensure},
@@ -37,7 +37,7 @@ impl Staff {
         ensure(replaced > 0, Problem::conflict("the submission is being graded", "wait for its grade"))?;
         let jobs = enqueue_replaced(&mut transaction, &assignment, self.account.id, id..=id).await?;
         let entry = self.entry("graded again", Some(assignment.id), "one submission");
-        view::log_event(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        view::log_event(&mut transaction, &LogEntry { submission: Some(id), ..entry }).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(EnqueuedJobs { jobs })
     }

@@ -2,7 +2,7 @@
 use crate::domain::{
     Member,
     submissions::mark,
-    view::{self, Assignment, Entry, Submission},
+    view::{self, Assignment, LogEntry, Submission},
 };
 use crate::{
     calendar,
@@ -228,7 +228,7 @@ impl Member {
             transaction.execute(statement, values![account, key, assignment.id, digest, submission]).await?;
         }
         let entry = self.entry("submitted", Some(assignment.id), upload.name);
-        view::log_event(transaction, &Entry { submission: Some(submission), ..entry }).await?;
+        view::log_event(transaction, &LogEntry { submission: Some(submission), ..entry }).await?;
         Ok(submission)
     }
 }
