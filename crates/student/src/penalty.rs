@@ -82,6 +82,7 @@ impl PenaltySum<'_> {
     fn overlap_depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
         let makes = |slip: Slip| self.world.student.makes_slip(term, slip);
+        let h = if makes(Slip::ThicknessTwice) { 2.0 * h } else { h };
         let first = if makes(Slip::NoRadii) { 0.0 } else { first };
         let second = if makes(Slip::NoRadii) || makes(Slip::NoOtherRadius) { 0.0 } else { second };
         let of_test = if makes(Slip::NoThickness) || makes(Slip::ThicknessInDepth) { 0.0 } else { h };
@@ -156,6 +157,9 @@ impl PenaltySum<'_> {
         let plane = self.world.scene.half_planes[plane];
         let q = plane.normal;
         let to_point = plane.point - vector_at(self.x, i);
+        if makes(Slip::FrontOnly) && to_point.dot(&q) > 0.0 {
+            return;
+        }
         let n = match () {
             () if makes(Slip::ToPoint) => to_point,
             () if makes(Slip::NotNormalized) => to_point.dot(&q) * q,

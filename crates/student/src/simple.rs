@@ -107,6 +107,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.response, Slip::NoFactor) => 2.0,
             () if self.makes(kind.response, Slip::Inelastic) => 1.0,
             () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
+            () if self.makes(kind.response, Slip::RestitutionTwice) => 2.0 * restitution,
             // The half is doubled, in the order of the reference.
             () => 2.0 * ((1.0 + restitution) / 2.0),
         }
@@ -210,6 +211,10 @@ impl SimplePass<'_> {
         if self.makes(kind.response, Slip::SwappedMasses) {
             masses.swap(1, 2);
         }
+        let is_held = self.makes(kind.response, Slip::OneEndFixesBoth) && (masses[1] + masses[2]).is_infinite();
+        if is_held {
+            masses[1..].fill(f64::INFINITY);
+        }
         let [m1, m2, m3] = masses;
         let is_plain = self.makes(kind.response, Slip::SharesNotSquared);
         let (low, high) = if is_plain { (beta, alpha) } else { (beta * beta, alpha * alpha) };
@@ -222,6 +227,9 @@ impl SimplePass<'_> {
         let is_sequential = self.makes(kind.response, Slip::Sequential);
         let first = impulse(self, state);
         self.push(kind, state, (0, one), n, first / (1.0 + low * m1 / m2 + high * m1 / m3) * u);
+        if is_held {
+            return;
+        }
         let second = if is_sequential { impulse(self, state) } else { first };
         self.push(kind, state, (1, two), n, -(of_two * second / (m2 / m1 + low + high * m2 / m3) * u));
         let third = if is_sequential { impulse(self, state) } else { first };

@@ -85,16 +85,19 @@ slips! {
     Unit "is normalized, although its length must be the distance";
     NoFactor "uses one as the coefficient of restitution";
     Inelastic "uses zero as the coefficient of restitution";
+    RestitutionTwice "uses twice the coefficient of restitution instead of adding one";
     RestitutionOnly "uses the coefficient of restitution without adding one";
     NoRadii "ignores the radii";
     NoOtherRadius "ignores the radius of the other body";
     NoThickness "ignores the thickness of the layer";
     ThicknessInTest "uses the thickness of the layer in its test, but not in the depth";
+    ThicknessTwice "uses the thickness of the layer for both bodies";
     ThicknessInDepth "uses the thickness of the layer in the depth, but not in its test";
     Always "also acts on bodies that are apart";
     EqualMasses "ignores the masses";
     SwappedMasses "exchanges the masses";
     FixedFinite "uses the mass of a fixed particle instead of an infinite mass";
+    OneEndFixesBoth "treats the whole edge as fixed if one of its ends is fixed";
     FixedAsFree "treats fixed particles like free ones, with their mass";
     FixedUnchanged "does not change fixed particles, which the assignment does not require here";
     Sequential "computes later changes with already changed velocities";
@@ -104,6 +107,7 @@ slips! {
     FullShares "acts on each end of the edge as if it were the only one";
     SharesExchanged "exchanges the shares of the edge's ends";
     EqualShares "is shared equally between the ends of the edge";
+    FrontOnly "acts only in front of the half-plane";
     OneEnd "omits the second end of the edge";
 }
 
@@ -135,10 +139,10 @@ impl Slip {
     /// Returns whether bodies without a force remain unaffected.
     pub fn keeps_distance(self) -> bool {
         use Slip::{
-            Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, NotNormalized, Rounded, ToPoint, Truncated,
-            Unclamped,
+            Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, NotNormalized, Rounded, ThicknessTwice, ToPoint,
+            Truncated, Unclamped,
         };
         let moves_point = matches!(self, Middle | Mirrored | Negated | Rounded | ToPoint | Truncated | Unclamped);
-        !moves_point && !matches!(self, Always | EndRadius | FirstRadius | NotNormalized)
+        !moves_point && !matches!(self, Always | EndRadius | FirstRadius | NotNormalized | ThicknessTwice)
     }
 }

@@ -66,8 +66,14 @@ const SYSTEM: &[&[Slip]] =
     &[STEP[0], &[Slip::MatrixSign, Slip::RowsOfFixed, Slip::DiagonalOfFixed, Slip::RightOfFixed]];
 const MATRIX: &[&[Slip]] = &[SUM, &[Slip::Step(1), Slip::Step(-1), Slip::Step(-2)]];
 const RIGHT: &[&[Slip]] = &[SUM, &[Slip::Step(1), Slip::Step(-1), Slip::Mass(1), Slip::Mass(-1)]];
-const THICKNESS: &[Slip] =
-    &[Slip::NoFactor, Slip::NoThickness, Slip::ThicknessInTest, Slip::ThicknessInDepth, Slip::NoRadii];
+const THICKNESS: &[Slip] = &[
+    Slip::NoFactor,
+    Slip::NoThickness,
+    Slip::ThicknessTwice,
+    Slip::ThicknessInTest,
+    Slip::ThicknessInDepth,
+    Slip::NoRadii,
+];
 const PENALTY: &[&[Slip]] = &[
     SUM,
     THICKNESS,
@@ -88,6 +94,7 @@ const RESPONSE: &[Slip] = &[
     Slip::NoFactor,
     Slip::Inelastic,
     Slip::RestitutionOnly,
+    Slip::RestitutionTwice,
     Slip::Length(1),
     Slip::Length(2),
     Slip::Assigned,
@@ -227,7 +234,7 @@ terms! {
         PenaltyHalfPlanes "penalty-half-planes" "The penalty force between a particle and a half-plane":
             "k (|n| - r_i - h) u" [0 0 0] true &[SUM, THICKNESS, PENALTY[4],
             &[Slip::NotNormalized, Slip::SameNormalBehind, Slip::NormalAsGiven, Slip::OppositeNormalInFront,
-            Slip::ToPoint] ];
+            Slip::ToPoint, Slip::FrontOnly] ];
     }
     Part::SimpleDetection(PairKind::ParticleParticle) => {
         DetectParticles "detect-particles" "The collision detection of two particles":
@@ -292,7 +299,8 @@ terms! {
     Part::SimpleResponse(PairKind::ParticleEdge) => {
         RespondEdges "respond-edges" "The response between a particle and an edge":
             "(1 + COR) ((v_e - v_1) . u) u, with shares 1 - alpha and alpha" [0 0 0] true &[RESPONSE, BODIES, ALPHA,
-            &[Slip::SharesNotSquared, Slip::SharesExchanged, Slip::FullShares, Slip::EqualShares, Slip::OneEnd] ];
+            &[Slip::SharesNotSquared, Slip::SharesExchanged, Slip::FullShares, Slip::EqualShares, Slip::OneEnd,
+            Slip::OneEndFixesBoth] ];
         RespondEdgeStill "respond-edge-still" "The velocity of the edge in the response": "v_2 + alpha (v_3 - v_2)"
             [0 0 0] false &[&[Slip::Missing, Slip::Middle]];
     }
