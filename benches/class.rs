@@ -63,12 +63,12 @@ fn hand_in(folder: &Path, programs: usize) {
 
 fn grade(folder: &Path, suite: &str, jobs: usize) -> Measured {
     let results = folder.join(format!("results-{jobs}"));
-    let (begun, before) = (Instant::now(), children());
+    let (start, before) = (Instant::now(), children());
     let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-oracle"));
     command.current_dir(folder).args(["grade", "submissions", "--suite", suite, "--jobs", &jobs.to_string()]);
     command.arg("--output").arg(&results).stdout(Stdio::null()).stderr(Stdio::null());
     assert!(command.status().expect("a process").success(), "a correct program was not accepted");
-    let (wall, after) = (begun.elapsed(), children());
+    let (wall, after) = (start.elapsed(), children());
     let time = |t: libc::timeval| Duration::new(t.tv_sec.unsigned_abs(), t.tv_usec.unsigned_abs() as u32 * 1000);
     Measured {
         wall,

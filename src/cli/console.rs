@@ -201,7 +201,7 @@ impl Bar {
 
     /// Shows on the bar how many steps are finished.
     pub(super) fn show_step(&mut self, step: u32) {
-        if self.progress_bar.is_none() && self.start_time.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
+        if self.progress_bar.is_none() && self.start_time.is_some_and(|start| start.elapsed() >= BAR_DELAY) {
             self.progress_bar = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
         }
         if let Some(bar) = &self.progress_bar {

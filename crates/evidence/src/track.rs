@@ -68,7 +68,7 @@ impl Track {
         track
     }
 
-    /// Appends a record.
+    /// Appends a state to the motion.
     pub(crate) fn push(&mut self, state: &State) {
         self.values.extend_from_slice(&state.positions);
         self.values.extend_from_slice(&state.velocities);

@@ -132,12 +132,12 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
         return Ok(Box::new(file));
     }
     let mut pipe = TimeoutPipe(file);
-    let begun = Instant::now();
+    let start = Instant::now();
     let mut first = [0; 1];
     loop {
         match pipe.0.read(&mut first) {
             // If a pipe has no writer, reading looks like the end of a file.
-            Ok(0) if begun.elapsed() < PIPE_TIMEOUT => thread::sleep(Duration::from_millis(5)),
+            Ok(0) if start.elapsed() < PIPE_TIMEOUT => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
                 let text = "nothing wrote to the pipe for five seconds";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text));

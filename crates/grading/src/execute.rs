@@ -79,7 +79,7 @@ impl Runner<'_> {
             if self.cancellation.is_cancelled() {
                 return task.without_run(Verdict::NotRun, Reason::Stopped);
             }
-            match self.try_grading(program, task, on_step) {
+            match self.grade_once(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < MAX_ATTEMPTS => attempt += 1,
                 Err(words) => return task.failure_result(Failure::Machine(words)),
@@ -87,7 +87,7 @@ impl Runner<'_> {
         }
     }
 
-    fn try_grading(
+    fn grade_once(
         &self,
         program: &StagedProgram,
         task: &SceneTask,

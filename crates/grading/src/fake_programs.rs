@@ -141,8 +141,8 @@ impl TestGrading {
         let backend = Backend::fake(move |job| {
             let scene = std::fs::read(job.folder.join("scene.xml")).expect("the scene");
             let name = job.program.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let begun = format!("{name} {}", blake3::hash(&scene));
-            seen.lock().expect("lock").push(begun);
+            let entry = format!("{name} {}", blake3::hash(&scene));
+            seen.lock().expect("lock").push(entry);
             run_fake(job)
         });
         let folder = tempfile::tempdir().expect("folder");

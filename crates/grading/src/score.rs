@@ -204,7 +204,7 @@ mod tests {
         (SceneResult { right_steps, ..SceneResult::without_run("a/b", 10, verdict, Reason::Right) }, false)
     }
 
-    fn points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
+    fn sum_points(credit: Credit, scenes: Vec<(SceneResult, bool)>) -> f64 {
         let marking = Marking {
             points: 30.0,
             credit,
@@ -219,11 +219,11 @@ mod tests {
     #[test]
     fn partial_credit_follows_the_suite() {
         let mixed = || vec![scene(Verdict::Accepted, 10), scene(Verdict::WrongAnswer, 5), scene(Verdict::TimeLimit, 9)];
-        assert_eq!(points(Credit::Scenes, mixed()), 10.0);
-        assert_eq!(points(Credit::Steps, mixed()), 15.0);
-        assert_eq!(points(Credit::All, mixed()), 0.0);
+        assert_eq!(sum_points(Credit::Scenes, mixed()), 10.0);
+        assert_eq!(sum_points(Credit::Steps, mixed()), 15.0);
+        assert_eq!(sum_points(Credit::All, mixed()), 0.0);
         for credit in [Credit::Scenes, Credit::Steps, Credit::All] {
-            assert_eq!(points(credit, vec![scene(Verdict::Accepted, 10); 7]), 30.0);
+            assert_eq!(sum_points(credit, vec![scene(Verdict::Accepted, 10); 7]), 30.0);
         }
     }
 
@@ -245,9 +245,9 @@ mod tests {
 
     #[test]
     fn a_wrong_answer_never_has_full_points() {
-        assert_eq!(points(Credit::Steps, vec![scene(Verdict::WrongAnswer, 10)]), 27.0);
+        assert_eq!(sum_points(Credit::Steps, vec![scene(Verdict::WrongAnswer, 10)]), 27.0);
         let of_one_step = SceneResult { steps: 1, ..scene(Verdict::WrongAnswer, 1).0 };
-        assert_eq!(points(Credit::Steps, vec![(of_one_step, false)]), 0.0);
+        assert_eq!(sum_points(Credit::Steps, vec![(of_one_step, false)]), 0.0);
     }
 
     #[test]

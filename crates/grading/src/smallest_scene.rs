@@ -129,9 +129,9 @@ impl Shrinker<'_> {
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.step_count()));
         let mut spent = Duration::ZERO;
         // Only the processor time of this thread counts, because other threads may be grading.
-        let begun = processor_time(ProcessorTimeScope::Thread);
+        let start = processor_time(ProcessorTimeScope::Thread);
         let is_over = |spent: Duration| {
-            let own = processor_time(ProcessorTimeScope::Thread).saturating_sub(begun);
+            let own = processor_time(ProcessorTimeScope::Thread).saturating_sub(start);
             spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
         };
         for task in tasks.into_iter().take(MAX_SCENES) {

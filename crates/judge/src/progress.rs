@@ -5,8 +5,8 @@ use super::{
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
-/// Observes the progress of judging, in the order of the steps with any number of threads. Methods do nothing by
-/// default.
+/// Observes the progress of judging. Steps are reported in order, even if several threads judge them. Methods do
+/// nothing by default.
 pub trait Progress {
     /// Observes the start of judging, after the initial record has been read.
     fn observe_begin(&mut self) {}

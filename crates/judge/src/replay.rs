@@ -186,7 +186,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if let Some(stop) = stop {
                 if let Stop::Trace { step, .. } = stop {
                     progress.observe_step_begin(step);
-                    self.try_step(step);
+                    self.compute_unreadable_step(step);
                 }
                 self.outcome.damage = self.outcome.damage.take().or(self.damage.take());
                 self.outcome.stop = Some(stop);
@@ -208,7 +208,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
     /// Computes a step with unreadable records. The original computes the step before it reads them, and may never
     /// finish.
-    fn try_step(&mut self, step: u32) {
+    fn compute_unreadable_step(&mut self, step: u32) {
         let mut simulation = Simulation::new(self.scene, RootSearch::OnDemand);
         simulation.state_mut().clone_from(&self.state);
         simulation.set_steps_done(step - 1);

@@ -8,7 +8,7 @@
 /// The relative difference below which coefficients agree.
 const RATIO_TOLERANCE: f64 = 1e-9;
 
-/// The share of the sum of absolute values to which a value is known if its terms cancel.
+/// The accepted rounding error of a sum whose terms cancel, relative to the sum of their absolute values.
 const CANCELLATION_FLOOR: f64 = 1e-13;
 
 /// Returns the positive factor of the trace's polynomial on which most coefficients agree, or 1 if no factor is better.

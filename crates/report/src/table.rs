@@ -46,7 +46,7 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
         Self { columns, rows: Vec::new() }
     }
 
-    /// Appends a row.
+    /// Appends a row with one cell per column.
     pub fn add_row(&mut self, cells: [Cell; COLUMNS]) {
         self.rows.push(cells);
     }

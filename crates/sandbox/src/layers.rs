@@ -129,7 +129,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
             Layer::Execution,
             probe.execution.clone(),
             if probe.from_memory {
-                "in memory, because the temporary folder is mounted noexec; build steps cannot run their products"
+                "in memory, because the temporary folder is mounted noexec; build steps cannot run compiled files"
             } else {
                 "programs run from copies in the temporary folder"
             },

@@ -21,7 +21,8 @@ impl Student {
         Self::default().with_mistake(mistake)
     }
 
-    /// Returns the student with a further mistake. Of two mistakes in one formula or rule, only the first is made.
+    /// Returns the student with a further mistake. If two mistakes concern the same formula or rule, only the first is
+    /// made.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {

@@ -117,9 +117,9 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), ParticlePairs { scene, student });
     let particles = 0..scene.particles.len();
     let before = if planes_first { particles.clone() } else { 0..0 };
-    before.flat_map(move |particle| of.half_planes(particle)).chain(particles.flat_map(move |particle| {
-        let planes = (!planes_first).then(|| of.half_planes(particle));
-        of.particles(particle).chain(of.edges(particle)).chain(planes.into_iter().flatten())
+    before.flat_map(move |particle| of.pairs_with_half_planes(particle)).chain(particles.flat_map(move |particle| {
+        let planes = (!planes_first).then(|| of.pairs_with_half_planes(particle));
+        of.pairs_with_particles(particle).chain(of.pairs_with_edges(particle)).chain(planes.into_iter().flatten())
     }))
 }
 
@@ -131,7 +131,7 @@ struct ParticlePairs<'a> {
 }
 
 impl<'a> ParticlePairs<'a> {
-    fn particles(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+    fn pairs_with_particles(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let Scene { particles, .. } = self.scene;
         let makes = move |mistake: Mistake| self.student.makes(mistake);
         let first = if makes(Mistake::PairsBothOrders) { 0 } else { particle + 1 };
@@ -145,7 +145,7 @@ impl<'a> ParticlePairs<'a> {
         (first..last).filter(is_kept).map(move |other| Pair { particle, object: Object::Particle(other) })
     }
 
-    fn edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+    fn pairs_with_edges(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let is_fixed = move |particle: usize| self.scene.particles[particle].fixed;
         self.scene.edges.iter().enumerate().filter_map(move |(index, edge)| {
             let is_endpoint = edge.first == particle || edge.second == particle;
@@ -159,7 +159,7 @@ impl<'a> ParticlePairs<'a> {
         })
     }
 
-    fn half_planes(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
+    fn pairs_with_half_planes(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let makes = |mistake: Mistake| self.student.makes(mistake);
         let most = match () {
             () if self.scene.particles[particle].fixed && makes(Mistake::PairsFixedSkipped) => 0,

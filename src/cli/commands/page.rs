@@ -38,13 +38,13 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     if !module.starts_with(MODULE_MAGIC) {
         bail!("the module is not WebAssembly; scripts/browser-page makes one");
     }
-    let course = arguments.suite.as_deref().map(|name| course_part(name, arguments.reader)).transpose()?;
+    let course = arguments.suite.as_deref().map(|name| select_visible_suite(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;
     target.finish_and_print(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
 /// Returns the part of a suite that the readers of the page may see.
-fn course_part(name: &str, reader: Audience) -> Result<CourseSuite> {
+fn select_visible_suite(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find_suite(name)?;
     CourseSuite::from_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

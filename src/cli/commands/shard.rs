@@ -151,8 +151,8 @@ impl Sharding {
             plan: plan_digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
-        let begun = FilePlace::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
-        Self { shard, common, folder: begun.path(), shard_file: begun }
+        let place = FilePlace::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
+        Self { shard, common, folder: place.path(), shard_file: place }
     }
 
     /// Returns the submissions that belong to the shard.

@@ -77,8 +77,7 @@ pub enum StageFault {
     },
     /// The contacts of the first impulse round change states wrongly.
     FirstRound,
-    /// Several contacts of the first impulse round together change states wrongly, although isolated contacts are
-    /// right.
+    /// The result is wrong if the first impulse round has several contacts, but right for isolated contacts.
     LaterRounds,
     /// In rounds after the first one, detection uses the predicted positions again.
     RoundsOfPrediction,

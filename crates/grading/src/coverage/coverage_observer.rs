@@ -69,9 +69,9 @@ impl<'a> CoverageObserver<'a> {
                     found,
                     when,
                     fixed: events::count_fixed_of_three(scene, bodies),
-                    place: events::contact_place(detection, bodies, time),
-                    ends: events::ends(edge),
-                    motion: events::edge_motion(detection, bodies),
+                    place: events::classify_contact_place(detection, bodies, time),
+                    ends: events::classify_ends(edge),
+                    motion: events::classify_edge_motion(detection, bodies),
                     masses,
                     radii: events::radii(scene, bodies, Some(edge)),
                     company,
@@ -82,7 +82,7 @@ impl<'a> CoverageObserver<'a> {
             }
             PairKind::ParticleHalfPlane => {
                 let fixed = events::fixed_single(scene, bodies);
-                let (side, normal) = (events::side(scene, detection), events::normal(scene, detection.pair));
+                let (side, normal) = (events::find_side(scene, detection), events::find_normal(scene, detection.pair));
                 HalfPlaneContact { found, when, fixed, side, normal, company, restitution, integrator }.event()
             }
         }
@@ -131,7 +131,7 @@ impl<'a> CoverageObserver<'a> {
         let zone = MovedZone {
             size,
             held,
-            motion: events::zone_motion(scene, particles, &self.step.q_start, &self.step.q_end),
+            motion: events::classify_zone_motion(scene, particles, &self.step.q_start, &self.step.q_end),
             age,
             position,
             edge: ZoneEdge::None,
@@ -141,7 +141,7 @@ impl<'a> CoverageObserver<'a> {
             limit: events::limit(scene),
             integrator: events::integrator(scene),
         };
-        let edge = |pair: &Pair| match events::ends(&scene.edges[pair.second as usize]) {
+        let edge = |pair: &Pair| match events::classify_ends(&scene.edges[pair.second as usize]) {
             Ends::Next => ZoneEdge::Next,
             Ends::Previous => ZoneEdge::Previous,
             Ends::Up | Ends::Down => ZoneEdge::Apart,
@@ -216,7 +216,7 @@ impl Observer for CoverageObserver<'_> {
             }
             Decision::Miss { .. } => {
                 let no_contact = NoContact {
-                    kind: events::kind(detection.pair.kind),
+                    kind: events::convert_kind(detection.pair.kind),
                     why: events::find_miss_reason(detection.pair.kind, detection.polynomials),
                     found: events::stage_value(self.stage),
                     fixed: events::any_fixed(self.scene, &bodies),

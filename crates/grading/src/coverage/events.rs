@@ -125,7 +125,7 @@ pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Rad
     if equal { Radii::Equal } else { Radii::Unequal }
 }
 
-pub(super) const fn kind(kind: PairKind) -> Kind {
+pub(super) const fn convert_kind(kind: PairKind) -> Kind {
     match kind {
         PairKind::ParticleParticle => Kind::Particles,
         PairKind::ParticleEdge => Kind::Edge,
@@ -133,7 +133,7 @@ pub(super) const fn kind(kind: PairKind) -> Kind {
     }
 }
 
-pub(super) const fn ends(edge: &Edge) -> Ends {
+pub(super) const fn classify_ends(edge: &Edge) -> Ends {
     match (edge.first, edge.second) {
         (first, second) if second == first + 1 => Ends::Next,
         (first, second) if first == second + 1 => Ends::Previous,
@@ -148,7 +148,7 @@ fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
     start + time * (vector_at(detection.q_end, body) - start)
 }
 
-pub(super) fn contact_place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
+pub(super) fn classify_contact_place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
     let [one, two, three] = [0, 1, 2].map(|index| position(detection, bodies[index], time));
     match (one - two).dot(&(three - two)) / (three - two).dot(&(three - two)) {
         ..NEAR_END => Place::First,
@@ -157,7 +157,7 @@ pub(super) fn contact_place(detection: &Detection<'_>, bodies: &[usize], time: f
     }
 }
 
-pub(super) fn edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMotion {
+pub(super) fn classify_edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMotion {
     let [two, three] = [1, 2].map(|index| {
         let body = bodies[index];
         vector_at(detection.q_end, body) - vector_at(detection.q_start, body)
@@ -169,13 +169,13 @@ pub(super) fn edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMo
     }
 }
 
-pub(super) fn side(scene: &Scene, detection: &Detection<'_>) -> Side {
+pub(super) fn find_side(scene: &Scene, detection: &Detection<'_>) -> Side {
     let plane = &scene.half_planes[detection.pair.second as usize];
     let offset = vector_at(detection.q_start, detection.pair.first as usize) - plane.point;
     if offset.dot(&plane.normal) < 0.0 { Side::Behind } else { Side::Front }
 }
 
-pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
+pub(super) fn find_normal(scene: &Scene, pair: Pair) -> Normal {
     let normal = scene.half_planes[pair.second as usize].normal;
     if (normal.dot(&normal) - 1.0).abs() < 1e-6 { Normal::Unit } else { Normal::Other }
 }
@@ -183,27 +183,27 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
 /// Returns why a pair does not collide. It follows from the signs of the pair's polynomials at a few times of this step
 /// and the next.
 pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> NoContactReason {
-    const SAMPLE_TIMES: u32 = 8;
+    const SAMPLES_PER_STEP: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
-        range.map(|time| f64::from(time) / f64::from(SAMPLE_TIMES)).any(|time| {
+        range.map(|time| f64::from(time) / f64::from(SAMPLES_PER_STEP)).any(|time| {
             polynomials.iter().enumerate().all(|(index, polynomial)| positive(polynomial, time) != (index == left_out))
         })
     };
     let approach = polynomials.len().saturating_sub(1);
     let is_edge = kind == PairKind::ParticleEdge;
     match () {
-        () if holds_but(approach, 0..=SAMPLE_TIMES) => NoContactReason::Parting,
-        () if is_edge && holds_but(1, 0..=SAMPLE_TIMES) => NoContactReason::BesideFirst,
-        () if is_edge && holds_but(2, 0..=SAMPLE_TIMES) => NoContactReason::BesideSecond,
-        () if holds_but(polynomials.len(), SAMPLE_TIMES + 1..=2 * SAMPLE_TIMES) => NoContactReason::Late,
+        () if holds_but(approach, 0..=SAMPLES_PER_STEP) => NoContactReason::Parting,
+        () if is_edge && holds_but(1, 0..=SAMPLES_PER_STEP) => NoContactReason::BesideFirst,
+        () if is_edge && holds_but(2, 0..=SAMPLES_PER_STEP) => NoContactReason::BesideSecond,
+        () if holds_but(polynomials.len(), SAMPLES_PER_STEP + 1..=2 * SAMPLES_PER_STEP) => NoContactReason::Late,
         () => NoContactReason::Never,
     }
 }
 
 /// Classifies the motion of a zone, from the start of the step to its positions before the failsafe. The arithmetic is
 /// the same as in collisions.md 5, so a zone that does not rotate has an angular momentum of exactly zero.
-pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
+pub(super) fn classify_zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| vector_at(q_end, particle) - vector_at(q_start, particle);
     if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {

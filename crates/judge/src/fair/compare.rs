@@ -450,16 +450,16 @@ fn judge_with_scale(right: &[BoundedValue], logged: &[f64], missing: usize, scal
 /// A program that interpolates from values within the step has large errors in the higher coefficients, where these
 /// values cancel.
 fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
-    /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
-    const SAMPLE_TIMES: u8 = 16;
+    /// The number of equal intervals between sample times. A polynomial of degree five is hardly larger between them.
+    const SAMPLE_INTERVALS: u8 = 16;
     let norm = bound_sum(right);
     if !(scale > 0.0) {
         return None;
     }
     let tolerance = UNIT_ROUNDOFF * scale * FAIR_UNITS * norm;
     let mut share = 0.0_f64;
-    for time in 0..=SAMPLE_TIMES {
-        let t = f64::from(time) / f64::from(SAMPLE_TIMES);
+    for time in 0..=SAMPLE_INTERVALS {
+        let t = f64::from(time) / f64::from(SAMPLE_INTERVALS);
         let residual = right.iter().zip(logged).enumerate().fold(0.0, |sum, (k, (r, &s))| {
             let is_dropped = k < missing && check_coefficient(r, s, norm, true, scale).is_ok();
             sum * t + if is_dropped { 0.0 } else { s - scale * r.value }

@@ -78,8 +78,8 @@ impl StepJudgement {
         self
     }
 
-    /// Returns likely factors of a polynomial whose coefficients show it only roughly: the factor of the same
-    /// polynomial of another pair of its kind, and 1. Factors of other polynomials prove nothing.
+    /// Returns likely factors of a polynomial whose own factor is known only roughly: the factor of the same polynomial
+    /// of another pair of this kind, and 1. Factors of other polynomials are no evidence.
     pub(super) fn likely_factors(&self, kind: PairKind, number: usize) -> [f64; 2] {
         [self.factors[kind][number].last(), 1.0]
     }

@@ -109,8 +109,8 @@ impl<'a> Workers<'a> {
 /// Judges the remaining steps of a batch, each with the next free worker. Each rule book stops when its remaining work
 /// is used up. If the original's rules stop, the fair rules stop as well.
 ///
-/// Steps are begun in order. A step that was begun is completed, or needs more than the remaining work by itself.
-/// Therefore, with any number of threads, the first step beyond a budget is always among the begun steps.
+/// Steps are started in order. A started step is completed, or needs more than the remaining work by itself.
+/// Therefore, with any number of threads, the first step beyond a budget is always among the started steps.
 fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [rest, fair_rest]: [u64; 2]) {
     let slots = &batch.slots[..batch.filled];
     let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));

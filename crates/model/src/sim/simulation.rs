@@ -55,8 +55,8 @@ impl Simulation {
         &mut self.state
     }
 
-    /// Returns the pairs of the penalty force, if the scene has one. In a contest their order depends on the previous
-    /// steps.
+    /// Returns the pairs of the penalty force; `None` if the scene has no penalty force. With contest detection, the
+    /// order of the pairs depends on earlier steps.
     pub fn penalty_pairs(&mut self) -> Option<&mut PenaltyPairs> {
         self.forces.pairs()
     }

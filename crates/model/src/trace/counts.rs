@@ -139,7 +139,7 @@ impl fmt::Display for EventCounts {
         writeln!(f, "impulses      {}", self.impulses)?;
         writeln!(
             f,
-            "geometric     {} steps, {} rigid failsafes, largest zone {}, most zones {}",
+            "geometric     {} steps, {} rigid failsafes, largest zone {} particles, at most {} zones in a round",
             self.geometric_steps, self.failsafes, self.largest_zone, self.most_zones
         )
     }

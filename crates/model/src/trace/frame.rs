@@ -171,7 +171,7 @@ impl PolynomialLog {
         self.coefficient_ends.clear();
     }
 
-    /// Appends a polynomial.
+    /// Appends a polynomial with these coefficients.
     pub fn push(&mut self, coefficients: &[f64]) {
         self.coefficients.extend_from_slice(coefficients);
         self.coefficient_ends.push(self.coefficients.len());

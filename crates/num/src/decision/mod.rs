@@ -45,7 +45,8 @@ pub use short_numbers::are_short;
 /// The maximum number of polynomials of one detection.
 pub const MAX_POLYNOMIALS: usize = 4;
 
-/// The largest reported margin, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
+/// The largest reported margin, in units of [`UNIT_ROUNDOFF`]. With it, the decision is right for any relative error up
+/// to about 1.
 pub const MAX_MARGIN: f64 = 9_007_199_254_740_992.0;
 
 /// The largest difference between the binary exponents of two coefficients for which [`decide`] uses integers if there
@@ -89,8 +90,8 @@ pub struct CertifiedDecision {
     /// touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at most
     /// 1), or is `None` if a coefficient is not finite. The value is `None` for `Misses`.
     pub time: Option<[f64; 2]>,
-    /// The number of units `u` of the coefficients' bounds for which the decision is proved to survive errors, at least
-    /// the given `units` and at most [`MAX_MARGIN`]. The true number may be larger. It is 0 for `Borderline`.
+    /// The number of units `u` of the coefficients' bounds for which the decision is proved to be right, at least the
+    /// given `units` and at most [`MAX_MARGIN`]. The true number may be larger. It is 0 for `Borderline`.
     pub margin: f64,
     /// The level that was needed.
     pub level: Level,

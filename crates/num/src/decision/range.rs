@@ -65,11 +65,11 @@ impl Problem {
     /// Panics if there are too many polynomials or coefficients.
     #[inline]
     pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: IntervalEnd) -> Self {
-        assert!(polynomials.len() <= MAX_POLYNOMIALS, "a detection never has so many polynomials");
+        assert!(polynomials.len() <= MAX_POLYNOMIALS, "a detection has at most MAX_POLYNOMIALS polynomials");
         let empty = ExactPolynomial { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
         let mut problem = Self { list: [empty; MAX_POLYNOMIALS], count: polynomials.len() };
         for (exactly, polynomial) in problem.list.iter_mut().zip(polynomials) {
-            assert!(polynomial.len() <= MAX_COEFFICIENTS, "a detection's polynomial never has so many coefficients");
+            assert!(polynomial.len() <= MAX_COEFFICIENTS, "a polynomial has at most MAX_COEFFICIENTS coefficients");
             exactly.length = polynomial.len();
             for (value, &coefficient) in exactly.coefficients.iter_mut().zip(polynomial.iter().rev()) {
                 *value = interval_end(coefficient, units, ends);
@@ -95,7 +95,7 @@ impl Problem {
     }
 
     /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step, and the number of
-    /// further units of the bounds that the result survives. An empty problem is excluded.
+    /// further units of the bounds for which the result stays right. An empty problem is excluded.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -140,9 +140,9 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// Returns the number of further units of the bounds that a hit survives, at least 0. It is the smallest of the
-    /// polynomials' values over their bounds, at the best of several times from `first` on. The times are spread evenly
-    /// over the rest of the step, and more closely after `first`, because a hit may be short.
+    /// Returns the number of further units of the bounds for which a hit stays a hit, at least 0. It is the smallest of
+    /// the polynomials' values over their bounds, at the best of several times from `first` on. The times are spread
+    /// evenly over the rest of the step, and more closely after `first`, because a hit may be short.
     pub(crate) fn hit_slack(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));

@@ -46,7 +46,7 @@ impl<'a> Gif<'a> {
         })
     }
 
-    /// Appends a picture.
+    /// Appends a picture to the film.
     ///
     /// # Errors
     /// Fails if it cannot be written.

@@ -387,7 +387,7 @@ fn a_program_whose_files_are_missing_is_not_sent_to_a_debugger() {
     }
 }
 
-/// A named mistake comes before unexplained scenes. Of its scenes, the one with the fewest findings comes first.
+/// A named mistake comes before unexplained scenes. Its scene with the fewest findings comes first.
 #[test]
 fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let named = |scene: &str, id: &str| {

@@ -145,8 +145,8 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     let limits = &order.limits;
     sys::set_limit(Resource::Fsize, order.file_bytes())?;
     sys::set_limit(Resource::Nofile, u64::from(limits.open_files))?;
-    let begun = u64::from(limits.cpu.subsec_nanos() > 0);
-    sys::set_limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
+    let partial_second = u64::from(limits.cpu.subsec_nanos() > 0);
+    sys::set_limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(partial_second + SPARE_SECONDS))?;
     sys::set_limit(Resource::Stack, STACK_BYTES)?;
     sys::set_limit(Resource::Memlock, 64 << 10)?;
     sys::set_limit(Resource::Msgqueue, 0)?;

@@ -2,7 +2,7 @@
 //! usual paths.
 //!
 //! The places that Landlock allows (see `file_rules.rs`) are visible. Except for the working folder, they are
-//! read-only. Of the host's other files, not even the names are visible. Folders in memory such as `/tmp` and
+//! read-only. Other files of the host, and their names, are invisible. Folders in memory such as `/tmp` and
 //! `/dev/shm` cannot be written, because files there would not count for any process.
 
 use std::{

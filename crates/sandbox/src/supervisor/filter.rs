@@ -2,7 +2,7 @@
 //! others.
 //!
 //! There is a separate filter for each kind of answer. For a call, the strictest answer counts, in the order kill,
-//! error, announce, allow. Of equal answers, that of the last filter counts. Forbidden calls are announced to the
+//! error, announce, allow. If answers are equal, the last filter's counts. Forbidden calls are announced to the
 //! supervisor, which names the call and kills the program. The filter that announces is the first. If the kernel cannot
 //! announce calls, a forbidden call kills the program with `SIGSYS`. The filter for calls that do not exist is
 //! installed last, because it also removes the calls that install filters. Every filter kills programs that use another

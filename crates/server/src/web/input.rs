@@ -111,14 +111,15 @@ fn fix_integers(value: &mut Value) {
     }
 }
 
-fn parse_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
+/// Parses JSON in which an integer may be written like `7.0`.
+fn parse_with_whole_floats<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let mut value = serde_json::from_slice(bytes).ok()?;
     fix_integers(&mut value);
     serde_json::from_value(value).ok()
 }
 
-/// Reads the fields of an object. Their types are checked later.
-pub(super) fn read_whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
+/// Reads the fields of an object, in which an integer may be written like `7.0`. Their types are checked later.
+pub(super) fn read_fields<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
     fields.values_mut().for_each(fix_integers);
     Ok(fields)
@@ -131,7 +132,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
         check_type(request.headers(), "application/json", "the body must be JSON: Content-Type: application/json")?;
         let bytes = read_body(request, state).await?;
         let read = serde_json::from_slice(&bytes);
-        let read = read.or_else(|error| parse_whole_numbers(&bytes).ok_or(error));
+        let read = read.or_else(|error| parse_with_whole_floats(&bytes).ok_or(error));
         read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
     }
 }

@@ -136,7 +136,7 @@ impl Program {
     }
 
     /// Grades an example submission, and checks that the verdict is the expected one.
-    async fn try_example(
+    async fn check_example(
         &self,
         folder: &Path,
         submission: &[&str],
@@ -183,11 +183,11 @@ impl Grader for Program {
         if self.run_step(folder, &simulate, &stop).await? != 0 {
             return Ok(());
         }
-        self.try_example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
+        self.check_example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
         let program = idle.join("FOSSSim");
         fs::write(&program, "#!/bin/sh\nexit 0\n").map_err(|error| error.to_string())?;
         fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).map_err(|error| error.to_string())?;
-        self.try_example(folder, &[&program.display().to_string()], 1, &stop).await
+        self.check_example(folder, &[&program.display().to_string()], 1, &stop).await
     }
 
     async fn grade(

@@ -213,11 +213,11 @@ impl Observer for Follower<'_> {
             // The geometric part starts from the positions of the mid record, which are known.
             self.moved_particles.fill(false);
         }
-        let part = self.pass_part();
-        let number = self.passes[part];
-        self.passes[part] += 1;
-        self.next_polynomial = self.logged_passes.filter(|logged| number < logged[part]).map(|logged| {
-            let passes = if part == 0 { number } else { logged[0] + number };
+        let stage = self.stage_index();
+        let number = self.passes[stage];
+        self.passes[stage] += 1;
+        self.next_polynomial = self.logged_passes.filter(|logged| number < logged[stage]).map(|logged| {
+            let passes = if stage == 0 { number } else { logged[0] + number };
             passes * self.context.polynomials_per_pass
         });
     }

@@ -59,14 +59,15 @@ impl<'a> Follower<'a> {
         matches!(self.context.scene.collision, Collision::Hybrid { .. })
     }
 
-    pub(super) fn pass_part(&self) -> usize {
+    /// Returns 1 for the geometric stage, otherwise 0.
+    pub(super) fn stage_index(&self) -> usize {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
     /// Returns the end positions of the step that this pass provably uses, because the trace contains them.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
-        let number = self.passes[self.pass_part()];
+        let number = self.passes[self.stage_index()];
         match self.pass.stage {
             Stage::Impulses { .. } if number == before && after == 0 => Some(&self.records.mid?.state.positions),
             Stage::Geometric { .. } if number == after => Some(&self.records.end.state.positions),

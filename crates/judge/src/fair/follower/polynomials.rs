@@ -66,7 +66,7 @@ impl<'a> Follower<'a> {
             let is_known = self.known_positions().is_some()
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
             // After an error that moves the particles, their positions are unknown.
-            let is_reached = is_known || !self.has_error[self.pass_part()];
+            let is_reached = is_known || !self.has_error[self.stage_index()];
             let pended = self.judgement.pending_count();
             let judgement = self.judgement.record_evidence(&expected, &logged, result, is_reached);
             let is_pending = self.judgement.pending_count() > pended;
@@ -127,16 +127,16 @@ impl<'a> Follower<'a> {
         mismatch: Mismatch,
         is_known: bool,
     ) {
-        let (part, kind, number) = (self.pass_part(), logged.place.pair.kind, logged.number);
+        let (stage, kind, number) = (self.stage_index(), logged.place.pair.kind, logged.number);
         if !is_known {
-            if self.has_error[part] {
+            if self.has_error[stage] {
                 return;
             }
             if self.is_moved(logged.place.pair) {
                 // A formula that is known to be wrong is wrong at all positions.
                 if !self.wrong_formulas[kind][number] {
                     self.add_finding(FindingDetail::PassPositions { place: logged.place });
-                    self.has_error[part] = true;
+                    self.has_error[stage] = true;
                 }
                 return;
             }

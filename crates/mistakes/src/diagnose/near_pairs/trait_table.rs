@@ -125,26 +125,26 @@ trait_table! {
         |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.indices()[1] > 0;
     NO_AXIS TRAIT_COUNTS "the numbers of the particles are far apart" "|i - j| is greater than {n}"
         |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && distance(pair.indices()) > n;
-    ANY_AXIS NO_NUMBER "the bodies are on different sides of zero {axis}" "0 is between their {axis}"
+    ANY_AXIS NO_NUMBER "the bodies are on different sides of zero {axis}" "0 is between the bodies' {axis} values"
         |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
     ANY_AXIS TRAIT_LENGTHS "a multiple of a round number is between the bodies {axis}"
-        "A multiple of {n} is between their {axis}" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
+        "A multiple of {n} is between the bodies' {axis} values" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
     ANY_AXIS TRAIT_LENGTHS
         "a multiple of a round number except zero is between the bodies {axis}, as if decimals were cut off"
-        "The whole parts of their {axis} / {n} differ" |pair, axis, n| {
+        "The whole parts of the bodies' {axis} / {n} differ" |pair, axis, n| {
             let [one, other] = pair.points().map(|point| (point[axis] / n).trunc());
             one != other
         };
     ANY_AXIS TRAIT_LENGTHS "the bodies begin in different cells of a grid with round borders {axis}"
-        "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(corners(pair), axis, n, 0.0);
+        "A multiple of {n} is between the bodies' lowest {axis}" |pair, axis, n| are_split(corners(pair), axis, n, 0.0);
     ANY_AXIS TRAIT_FACTORS "a multiple of the largest diameter is between the bodies {axis}"
-        "A multiple of {n} times the largest diameter is between their {axis}"
+        "A multiple of {n} times the largest diameter is between the bodies' {axis} values"
         |pair, axis, n| are_split(pair.points(), axis, n * pair.geometry.largest_size, 0.0);
     ANY_AXIS TRAIT_FACTORS "the bodies begin in different cells of a grid of the largest diameter {axis}"
-        "A multiple of {n} times the largest diameter is between their smallest {axis}"
+        "A multiple of {n} times the largest diameter is between the bodies' lowest {axis}"
         |pair, axis, n| are_split(corners(pair), axis, n * pair.geometry.largest_size, 0.0);
     ANY_AXIS TRAIT_FACTORS "the bodies begin in different cells of a grid from the lowest body on {axis}"
-        "A multiple of {n} times the largest diameter from the smallest {axis} of all is between their smallest {axis}"
+        "A multiple of {n} largest diameters, from the lowest {axis} of all, is between the bodies' lowest {axis}"
         |pair, axis, n| are_split(corners(pair), axis, n * pair.geometry.largest_size, pair.geometry.corner[axis]);
     ANY_AXIS TRAIT_LENGTHS "both bodies contain the same multiple of a round number {axis}"
         "Both contain a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
@@ -156,7 +156,7 @@ trait_table! {
     ANY_AXIS TRAIT_LENGTHS "a body is far from the origin {axis}" "|{axis}| is greater than {n}"
         |pair, axis, n| pair.boxes().iter().any(|[low, high]| high[axis].max(-low[axis]) > n);
     ANY_AXIS TRAIT_FACTORS "neither body is among the first bodies of the scene {axis}"
-        "Both are more than {n} times the largest diameter from the smallest {axis} of all"
+        "Both are more than {n} times the largest diameter from the lowest {axis} of all"
         |pair, axis, n| {
             let start = pair.geometry.corner[axis];
             corners(pair).iter().all(|low| low[axis] - start > n * pair.geometry.largest_size)

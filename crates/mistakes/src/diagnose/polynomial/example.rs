@@ -10,8 +10,8 @@ fosssim_model::drops_leading!();
 /// Returns the example of a study, and the number of characters of its inputs.
 pub(super) fn find_smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.is_right);
-    let best = wrong.min_by_key(|case| (count_digits(case), case.sample.step, case.sample.pass))?;
-    Some((count_digits(best), build_example(study, best)))
+    let best = wrong.min_by_key(|case| (count_input_characters(case), case.sample.step, case.sample.pass))?;
+    Some((count_input_characters(best), build_example(study, best)))
 }
 
 fn build_example(study: &PolynomialStudy, case: &PolynomialSample) -> Example {
@@ -28,7 +28,7 @@ fn build_example(study: &PolynomialStudy, case: &PolynomialSample) -> Example {
 }
 
 /// Returns the number of characters of the inputs.
-fn count_digits(case: &PolynomialSample) -> usize {
+fn count_input_characters(case: &PolynomialSample) -> usize {
     example_values(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }
 

@@ -48,10 +48,10 @@ impl ParticleGroup {
     }
 }
 
-/// The result of a zone.
+/// The motion of a zone, compared with the expected motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ZoneResult {
-    /// The zone is the expected one.
+    /// The zone moved or stopped as expected.
     Right,
     /// The zone was not moved or stopped as expected.
     Wrong(WrongZones),

@@ -32,20 +32,20 @@ pub(super) fn handle<O: Observer>(
         WantedPairs::Calls => None,
         WantedPairs::Bytes(_) | WantedPairs::Nothing => nearby.and_then(|nearby| nearby.find(x)),
     };
-    let mut looking = RunningPass { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
+    let mut running = RunningPass { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particle_count() {
         let [particles, edges, half_planes] = bodies.object_counts().remaining_row(PassCursor::from_first(i));
         if let Some(found) = &mut found {
             let [particles, edges] = found.next(i);
-            particles.for_each(|j| looking.try_particles(i, j));
-            edges.for_each(|edge| looking.try_edge(i, edge));
+            particles.for_each(|j| running.decide_particle_pair(i, j));
+            edges.for_each(|edge| running.decide_edge_pair(i, edge));
         } else {
-            particles.for_each(|j| looking.try_particles(i, j));
-            edges.filter(|&edge| !is_end(bodies.edges[edge], i)).for_each(|edge| looking.try_edge(i, edge));
+            particles.for_each(|j| running.decide_particle_pair(i, j));
+            edges.filter(|&edge| !is_end(bodies.edges[edge], i)).for_each(|edge| running.decide_edge_pair(i, edge));
         }
-        half_planes.for_each(|half_plane| looking.try_half_plane(i, half_plane));
+        half_planes.for_each(|half_plane| running.decide_half_plane_pair(i, half_plane));
     }
-    let hits = looking.hits;
+    let hits = running.hits;
     observer.end_pass(pass, hits);
 }
 
@@ -62,25 +62,25 @@ struct RunningPass<'a, O> {
 }
 
 impl<O: Observer> RunningPass<'_, O> {
-    fn try_particles(&mut self, i: usize, j: usize) {
+    fn decide_particle_pair(&mut self, i: usize, j: usize) {
         let normal = particle_particle::overlap(self.bodies, self.x, self.v, i, j);
-        self.decide_pair(PairKind::ParticleParticle, i, j, normal, |looking, n| {
-            particle_particle::simple_response(looking.bodies, looking.factor, looking.v, i, j, n)
+        self.decide_pair(PairKind::ParticleParticle, i, j, normal, |running, n| {
+            particle_particle::simple_response(running.bodies, running.factor, running.v, i, j, n)
         });
     }
 
-    fn try_edge(&mut self, i: usize, edge: usize) {
+    fn decide_edge_pair(&mut self, i: usize, edge: usize) {
         let normal = particle_edge::overlap(self.bodies, self.x, self.v, i, edge);
-        self.decide_pair(PairKind::ParticleEdge, i, edge, normal, |looking, n| {
-            let (bodies, ends) = (looking.bodies, looking.bodies.edges[edge]);
-            particle_edge::simple_response(bodies, looking.factor, looking.x, looking.v, i, ends, n)
+        self.decide_pair(PairKind::ParticleEdge, i, edge, normal, |running, n| {
+            let (bodies, ends) = (running.bodies, running.bodies.edges[edge]);
+            particle_edge::simple_response(bodies, running.factor, running.x, running.v, i, ends, n)
         });
     }
 
-    fn try_half_plane(&mut self, i: usize, half_plane: usize) {
+    fn decide_half_plane_pair(&mut self, i: usize, half_plane: usize) {
         let normal = particle_half_plane::overlap(self.bodies, self.x, self.v, i, half_plane);
-        self.decide_pair(PairKind::ParticleHalfPlane, i, half_plane, normal, |looking, n| {
-            particle_half_plane::simple_response(looking.factor, looking.v, i, n)
+        self.decide_pair(PairKind::ParticleHalfPlane, i, half_plane, normal, |running, n| {
+            particle_half_plane::simple_response(running.factor, running.v, i, n)
         });
     }
 

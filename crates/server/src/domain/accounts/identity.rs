@@ -99,9 +99,9 @@ pub(in crate::domain) enum SignInMethod {
 /// The state of a session, for a request.
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
-    /// Whether the session was begun with a link from a course's staff.
+    /// Whether the session was started with a link from a course's staff.
     pub(in crate::domain) is_by_staff: bool,
-    /// Whether the session was begun with a token.
+    /// Whether the session was started with a token.
     pub(in crate::domain) is_by_token: bool,
     /// Whether the session is young enough to create further ways to sign in.
     pub(in crate::domain) is_recent: bool,

@@ -1,7 +1,7 @@
 //! The API of assignments, and of the results of a whole class.
 use super::super::{
     archive_check,
-    input::{Body, QueryInput, SeenEvent, UrlPathParts, read_whole_numbers},
+    input::{Body, QueryInput, SeenEvent, UrlPathParts, read_fields},
     upload,
 };
 use crate::{
@@ -35,7 +35,7 @@ pub(super) struct AssignmentInput {
     title: String,
     /// Whether students see the assignment; by default it is hidden.
     visible: Option<bool>,
-    #[serde(default, deserialize_with = "read_whole_numbers")]
+    #[serde(default, deserialize_with = "read_fields")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
     /// The revision on which the change is based. If there is a later revision, the change is rejected. Without this

@@ -1,5 +1,5 @@
 //! The API of regrades.
-use super::super::input::{Body, ListStart, QueryInput, UrlPathParts, read_whole_numbers};
+use super::super::input::{Body, ListStart, QueryInput, UrlPathParts, read_fields};
 use crate::{
     domain::{Regrade, Settings, Staff},
     problem::Problem,
@@ -19,7 +19,7 @@ pub(super) struct RegradeInput {
     #[schema(value_type = Title)]
     reason: String,
     /// The grading settings that differ from the assignment's settings.
-    #[serde(default, deserialize_with = "read_whole_numbers")]
+    #[serde(default, deserialize_with = "read_fields")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
 }

@@ -8,7 +8,7 @@ use crate::{
 };
 
 /// Formats a time as HTML. The text is in UTC, and a script converts it to the reader's time zone.
-pub(super) fn time(milliseconds: &i64) -> String {
+pub(super) fn format_time(milliseconds: &i64) -> String {
     let (exact, minute) = (calendar::format_iso(*milliseconds), calendar::format_minute(*milliseconds));
     let second = exact.replace('T', " ");
     format!("<time datetime=\"{exact}\" title=\"{} UTC\">{minute} UTC</time>", &second[..19])
@@ -48,7 +48,7 @@ pub(super) fn result(code: &str, reached: &Option<String>, max_points: &Option<S
 }
 
 /// Describes the state of a regrade.
-pub(super) fn regrade(state: &RegradeState) -> &'static str {
+pub(super) fn describe_regrade(state: &RegradeState) -> &'static str {
     match state {
         RegradeState::Open => "open",
         RegradeState::Applied => "applied",
@@ -57,7 +57,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
 }
 
 /// Describes a score that a learning platform receives.
-pub(super) fn score(score: &serde_json::Value) -> String {
+pub(super) fn describe_score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(max_points)) => format!("{} / {}", format_points(points), format_points(max_points)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
@@ -82,7 +82,7 @@ pub(super) fn chip_class(submission: &Submission) -> &'static str {
 /// Returns the text of the label that shows a submission's state: the verdict, or the state before there is a verdict.
 pub(super) fn outcome(submission: &Submission) -> &str {
     match (submission.state.as_str(), &submission.grade) {
-        ("waiting" | "running", _) | (_, None) => state(&submission.state),
+        ("waiting" | "running", _) | (_, None) => describe_state(&submission.state),
         (_, Some(grade)) => &grade.verdict,
     }
 }
@@ -93,13 +93,13 @@ pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
 }
 
 /// Formats a number of bytes with a short unit, such as `1.5 MiB`.
-pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
+pub(super) fn format_size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     problem::format_size((*bytes).try_into().unwrap_or(0))
 }
 
 /// Formats the points of a grade; a dash if there are no points. Points that staff set are points of the whole grade,
 /// so the maximum of the groups that the reader sees is left out.
-pub(super) fn grade_points(submission: &Submission) -> String {
+pub(super) fn format_grade_points(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
         return by_hand.clone();
@@ -108,7 +108,7 @@ pub(super) fn grade_points(submission: &Submission) -> String {
 }
 
 /// Describes the state of a submission, such as `waiting`.
-pub(super) fn state(state: &str) -> &'static str {
+pub(super) fn describe_state(state: &str) -> &'static str {
     match state {
         "waiting" => "waiting",
         "running" => "being graded",

@@ -68,7 +68,7 @@ impl<'a> Weather<'a> {
         self.seen
     }
 
-    /// Submits the next file. Of 24 files, one kills its worker each time, one kills its grader, two freeze their
+    /// Submits the next file. Among 24 files, one kills its worker each time, one kills its grader, two freeze their
     /// worker once, and the others are ordinary.
     async fn hand_in(&mut self, number: usize) {
         let name = format!("submission-{number}");

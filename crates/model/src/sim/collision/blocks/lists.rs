@@ -138,15 +138,15 @@ impl Lists {
     #[inline(always)]
     pub fn particles<S: Simd>(&self, simd: S, first: usize) -> MotionLanes<S> {
         let [x, y, dx, dy, radius] = &self.particles;
-        (plane(simd, x, y, first), plane(simd, dx, dy, first), Lanes::load(simd, &radius[first..]))
+        (load_plane(simd, x, y, first), load_plane(simd, dx, dy, first), Lanes::load(simd, &radius[first..]))
     }
 
     /// Returns the motions and radii of the edges from `first` on.
     #[inline(always)]
     pub fn edges<S: Simd>(&self, simd: S, first: usize) -> (EdgeMotions<Lanes<S>>, Lanes<S>) {
         let [x2, y2, dx2, dy2, x3, y3, dx3, dy3, radius] = &self.edges;
-        let (x2, d2) = (plane(simd, x2, y2, first), plane(simd, dx2, dy2, first));
-        let (x3, d3) = (plane(simd, x3, y3, first), plane(simd, dx3, dy3, first));
+        let (x2, d2) = (load_plane(simd, x2, y2, first), load_plane(simd, dx2, dy2, first));
+        let (x3, d3) = (load_plane(simd, x3, y3, first), load_plane(simd, dx3, dy3, first));
         (EdgeMotions::new(x2, d2, x3, d3), Lanes::load(simd, &radius[first..]))
     }
 
@@ -158,9 +158,9 @@ impl Lists {
     }
 }
 
-/// Returns the vectors from `first` on, from the lists of their components.
+/// Loads the vectors that begin at index `first` from the arrays `x` and `y`.
 #[inline(always)]
-fn plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>> {
+fn load_plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>> {
     Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) }
 }
 

@@ -88,7 +88,8 @@ impl<'a> LoggedRows<'a> {
         self.polynomial_count += 4;
     }
 
-    /// Writes the polynomials of a pair with two polynomials.
+    /// Writes both polynomials of a particle-particle or particle-half-plane pair without their small leading
+    /// coefficients, whose bits are set in `small`.
     #[inline(always)]
     pub fn write_two_polynomials(&mut self, row: &[f64; SHORT_ROW_LENGTH], small: u64) {
         let Some(room) =
