@@ -1,10 +1,18 @@
-//! The health of workers and suites. If the grader fails, either the worker or the suite may be the cause. A worker
-//! checks itself after a fault, and a suite that keeps failing waits for staff.
+//! The health of workers and suites. If the grader fails, either the worker or the suite may be the cause. Therefore a
+//! worker that keeps failing leaves jobs to other workers, and a suite that keeps failing waits for staff.
 use crate::{
     db::{DbError, Transaction},
     queue::{Claimant, QueuePolicy, millis},
     values,
 };
+use std::time::Duration;
+
+/// The number of consecutive faults after which a worker leaves jobs to workers without a fault since their last
+/// result.
+const MAX_FAULTS: i64 = 3;
+
+/// The maximum pause of a failing worker. The first pause is one second, and each further one is twice as long.
+const MAX_PAUSE: Duration = Duration::from_secs(60);
 
 /// Returns the number of milliseconds for which a worker counts as alive after its last report.
 pub fn worker_timeout_millis(policy: &QueuePolicy) -> i64 {
@@ -41,7 +49,8 @@ pub async fn record_report(
     Ok(())
 }
 
-/// Returns whether a worker may claim a job: whether it has fewer jobs than its token has slots.
+/// Returns whether a worker may claim a job. It must have fewer jobs than its token has slots. If it fails while other
+/// workers succeed, it must pause first.
 ///
 /// # Errors
 ///
@@ -51,20 +60,45 @@ pub async fn may_claim(
     policy: &QueuePolicy,
     claimant: Claimant<'_>,
 ) -> Result<bool, DbError> {
-    let Some(token_id) = claimant.token_id else { return Ok(true) };
-    // Requests of one token are handled one after another, so that the number of its jobs is exact.
-    transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token_id]).await?;
-    let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
-           (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
-        FROM worker WHERE token = ? AND seen_at > {now} - ?";
-    let room = transaction.one(statement, values![token_id, token_id, worker_timeout_millis(policy)]).await?;
-    Ok(room.int("held")? < room.int("slots")?.max(1))
+    let recent = worker_timeout_millis(policy);
+    if let Some(token_id) = claimant.token_id {
+        // Requests of one token are handled one after another, so that the number of its jobs is exact.
+        transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token_id]).await?;
+        let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
+               (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
+            FROM worker WHERE token = ? AND seen_at > {now} - ?";
+        let room = transaction.one(statement, values![token_id, token_id, recent]).await?;
+        if room.int("held")? >= room.int("slots")?.max(1) {
+            return Ok(false);
+        }
+    }
+    let statement = "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?";
+    let row = transaction.row(statement, values![claimant.worker, MAX_FAULTS]).await?;
+    let Some(row) = row else { return Ok(true) };
+    let steps = u32::try_from(row.int("in_a_row")? - MAX_FAULTS).unwrap_or(0).min(16);
+    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(MAX_PAUSE);
+    // A fault with a future time was recorded before the clock was set back.
+    let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
+    if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
+        return Ok(true);
+    }
+    let statement = "SELECT name FROM worker WHERE name <> ? AND slots > 0 AND in_a_row = 0 AND seen_at > {now} - ?
+        AND seen_at <= {now} + ? LIMIT 1";
+    let better = transaction.row(statement, values![claimant.worker, recent, recent]).await?;
+    Ok(better.is_none())
 }
 
 /// Records that the grader failed in a worker that had reported that it can grade.
 pub(crate) async fn record_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
-    let statement = "UPDATE worker SET faults = faults + 1, fault = ?, fault_at = {now} WHERE name = ?";
+    let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
+        WHERE name = ?";
     transaction.execute(statement, values![fault, worker]).await?;
+    Ok(())
+}
+
+/// Records that a worker delivered a result.
+pub(crate) async fn record_result(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
+    transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
 }
 

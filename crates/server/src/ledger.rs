@@ -19,7 +19,8 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     let completion = queue::complete(transaction, lease).await?;
     match completion {
         Completion::Done => {
-            write_result(transaction, lease.job, lease.attempt, outcome).await?;
+            let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
+            health::record_result(transaction, &about.worker).await?;
         }
         Completion::Late => log_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
         Completion::Repeated => {}
