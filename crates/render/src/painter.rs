@@ -23,7 +23,7 @@ const MAX_DISC_RADIUS: f64 = 100_000.0;
 /// The maximum number of points drawn of a particle's path; some of the older points are dropped.
 const MAX_PATH_POINTS: usize = 2000;
 
-/// The options of a picture.
+/// The size of a picture, and what it shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PictureOptions {
     /// The size of the picture.

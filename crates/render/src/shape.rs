@@ -5,7 +5,7 @@ use crate::color::Rgb;
 /// A point in pixels.
 pub type Point = [f64; 2];
 
-/// The paint of a shape.
+/// The color and the style of a shape's fill or stroke.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     /// The shape is filled, or is a plain stroke.

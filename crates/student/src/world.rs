@@ -35,7 +35,7 @@ pub struct StepLog<'a> {
     pub guard: Option<StepGuard<'a>>,
     /// The number of steps of root searches beyond the usual number.
     pub long_searches: u64,
-    /// The integrator's prediction, after the impulse rounds have begun.
+    /// The integrator's prediction, after the impulse rounds have started.
     pub prediction: Option<Vec<f64>>,
 }
 

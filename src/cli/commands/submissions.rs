@@ -196,7 +196,8 @@ fn list_entries(folder: &Path, max_entries: usize) -> Result<Vec<PathBuf>> {
 }
 
 /// Returns the reason why a file in a class's folder is not a submission; `None` if it is one. Executable files are
-/// submissions. So are files that begin like programs or archives, because learning platforms do not keep permissions.
+/// submissions. Files that begin like programs or archives are also submissions, because learning platforms do not keep
+/// permissions.
 fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;

@@ -1,8 +1,8 @@
 //! Other coordinates, lengths and names change only the names.
 //!
-//! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits. So does a
-//! power of two as the unit of length, unless an absolute constant matters. Other maps change the round-off, so each
-//! step is compared from the same state, if no decision depends on round-off.
+//! Quarter turns and mirrors only exchange and negate coordinates, so every sum of products keeps its bits. A
+//! power of two as the unit of length also keeps them, unless an absolute constant matters. Other maps change the
+//! round-off, so each step is compared from the same state, if no decision depends on round-off.
 use super::{
     built_in,
     crowd::{Wanted, crowd, hybrid},

@@ -23,7 +23,7 @@ const MAX_PIECES: u32 = 5_000;
 /// The multiple of its rounding below which a coefficient is noise, so that halving shows no more.
 const NOISE_FACTOR: f64 = 2.0;
 
-/// The result of a search.
+/// Whether a search has found a time at which all polynomials are positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
     /// All polynomials are positive at this time, so `tau` is at most this time.
@@ -34,14 +34,14 @@ pub(crate) enum Answer {
     Unknown,
 }
 
-/// A result with its values.
+/// The answer of a search, with the values that prove it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SearchOutcome {
-    /// The result of the search.
+    /// Whether a time was found.
     pub(crate) answer: Answer,
     /// The time before which a polynomial is always negative.
     pub(crate) not_before: f64,
-    /// For [`Answer::Never`], the number of units of the bounds that the result is proved to survive.
+    /// For [`Answer::Never`], the number of units of the bounds for which the answer is proved to be right.
     pub(crate) slack: f64,
 }
 
@@ -94,7 +94,7 @@ impl BernsteinForms {
     }
 }
 
-/// The state of a search.
+/// A running search through the pieces of `[0, 1]`.
 struct PieceWalk<'a> {
     problem: &'a Problem,
     first_open: Option<f64>,

@@ -78,7 +78,7 @@ fn particles_that_hit_miss_leave_and_graze() {
 
 /// A decision near its limit changes from Yes over Borderline to No, and the margin tells how far the limit is.
 #[test]
-fn the_margin_is_what_the_decision_survives() {
+fn the_decision_is_right_within_its_margin() {
     let at = |gap: f64| decide_pair(&particle_pair([3.0 + gap, 0.0], [-2.0, 0.0], 1.0));
     let step = 1e-16;
     assert_eq!(at(-1e5 * step).certainty, HitCertainty::Hits);

@@ -33,7 +33,7 @@ pub(super) enum Precision {
     Rounded,
 }
 
-/// The rounding of the motions.
+/// The unit to which positions are rounded, and the records that stay exact.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
     /// The unit of rounded positions, which is a power of two.

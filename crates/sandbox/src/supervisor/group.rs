@@ -194,7 +194,7 @@ impl GroupPart {
         const MAX_TRIES: u32 = 10;
         let mut tries = 0;
         loop {
-            match Self::try_in(kind, place) {
+            match Self::create_once(kind, place) {
                 // A cleanup by another supervisor may have removed the group before it was locked.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES && place.is_dir() => {
                     tries += 1
@@ -204,7 +204,7 @@ impl GroupPart {
         }
     }
 
-    fn try_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
+    fn create_once(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
         let (path, folder) = create_locked_group(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
         // A group is useful only if it can be entered and, in version 2, can be killed.
@@ -363,7 +363,7 @@ mod tests {
     #[test]
     fn groups_that_nobody_holds_are_swept_away() {
         let place = tempfile::tempdir().unwrap();
-        let held = GroupPart::try_in(HierarchyKind::Memory, place.path());
+        let held = GroupPart::create_once(HierarchyKind::Memory, place.path());
         assert!(held.is_err(), "an ordinary folder is no group");
         let at = |name: &str| place.path().join(name);
         for name in ["fosssim-oracle-1-1", "fosssim-oracle-2-2", "other"] {

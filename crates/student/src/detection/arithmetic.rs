@@ -10,7 +10,7 @@ use fosssim_num::vector::Vec2;
 use crate::assignments::t2m2::{Subject, formulas::readings};
 use fosssim_model::sim::{PairMotion, PointMotion};
 
-/// The numbers of a program.
+/// The type of the numbers with which a program computes.
 pub trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {

@@ -87,7 +87,7 @@ struct CurrentCall {
     is_disputed: bool,
     /// Whether the polynomials are right and complete, and the logged ones exclude an impact.
     is_excluded_by_log: bool,
-    /// The motion of the objects.
+    /// The motion of the pair's objects; `None` if it has not been computed.
     motion: Option<CallMotion>,
 }
 

@@ -10,7 +10,7 @@ use forces::ForceTerms;
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_oracle::student::{Contact, Record, State, StepLog, Student};
 
-/// The arithmetic of a program.
+/// The order and the rounding of a program's sums and products, and its solver.
 #[derive(Debug, Clone, Copy)]
 pub struct Arithmetic {
     /// The arithmetic's name in tables.

@@ -12,7 +12,7 @@ use fosssim_num::tolerances::FIRST_RECORD_ERROR;
 const OPENING_RECORDS: usize = 25;
 const MAX_OPENING_BYTES: usize = 4 << 20;
 
-/// The records of a trace.
+/// The bytes from which a trace's records are read: the whole trace, or its beginning.
 pub struct Source<'a> {
     /// The beginning of the trace.
     beginning: &'a [u8],

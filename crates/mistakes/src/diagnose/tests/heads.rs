@@ -279,7 +279,7 @@ fn forms_are_intersected_over_traces() {
     assert!(traces.iter().all(|list| is_named_in(&told[0], list)));
 }
 
-/// If every coefficient of a detection is zero, the detection is not written yet. The same holds for the loop.
+/// If every coefficient of a detection is zero, the detection is not written yet. This also applies to the loop.
 #[test]
 fn unchanged_starter_code_is_not_written_yet() {
     let zero = |subjects: &[Subject]| {

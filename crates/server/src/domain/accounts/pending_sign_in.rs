@@ -25,7 +25,7 @@ const MAX_LOGINS: u32 = 3000;
 /// The message for a sign-in that began elsewhere, was already answered, or took too long.
 pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
-/// A sign-in that has begun, with the secrets that the answer must contain.
+/// A started sign-in, with the secrets that the answer must contain.
 pub(in crate::domain) struct StartedSignIn {
     /// The signed state, which the service returns.
     pub(in crate::domain) state: String,
@@ -46,7 +46,7 @@ pub(in crate::domain) struct PendingSignIn {
 }
 
 impl App {
-    /// Begins a sign-in at a service. The browser may have begun other sign-ins there.
+    /// Begins a sign-in at a service. The browser may have other pending sign-ins there.
     pub(in crate::domain) async fn begin_sign_in(
         &self,
         service: &str,

@@ -27,7 +27,7 @@ pub(super) async fn begin_sign_in(
     QueryInput(NextPage { path: to }): QueryInput<NextPage>,
 ) -> Result<Response, Problem> {
     match visitor.begin_at_provider(sign_in::local_path(&to), None).await {
-        Ok(begun) => Ok(redirect(&visitor.app, &begun)),
+        Ok(answer) => Ok(redirect(&visitor.app, &answer)),
         Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE => {
             let page = sign_in::render_ways(&visitor, to, problem.detail)?;
             Ok((StatusCode::SERVICE_UNAVAILABLE, page).into_response())

@@ -154,7 +154,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         let token = KEYS[0].sign(&claims);
         let answer = come(&server, &begun, &token).expect(303);
         assert_eq!(answer.header("location"), Some("/c/physics/a/m1"), "whatever the message says it wanted");
-        // A message is accepted once, only in the browser that began the sign-in, and only if a sign-in was begun.
+        // A message is accepted once, only in the browser that started the sign-in, and only if a sign-in was started.
         let again = come(&server, &begun, &token).expect(403).text();
         assert!(again.contains("unknown, used or too old"), "{again}");
         let (mine, other) = (begin(&server, &platform), begin(&server, &platform));

@@ -238,7 +238,7 @@ async fn only_people_of_the_domain_come_in(fresh: Fresh) {
         refused(&|claims| drop(claims.as_object_mut().expect("claims").remove("email_verified")), "ada")
             .contains("confirmed")
     );
-    // She gets the account that staff created for this login, once. Sessions that staff could have begun in it have
+    // She gets the account that staff created for this login, once. Sessions that staff could have started in it have
     // ended.
     let named = |claims: &mut Value| claims["email"] = json!("Ada@Uni.Example");
     let (ada, _) = sign_in(&server, &provider, "id-7", named);

@@ -113,7 +113,7 @@ slips! {
 
 /// The slips of quantities that are added to a sum.
 pub(super) const SUM: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::Doubled, Slip::Halved];
-/// The slips of a vector.
+/// The slips in the components of a vector.
 pub(super) const VECTOR: &[Slip] = &[Slip::XOnly, Slip::YOnly, Slip::Exchanged];
 /// The slips of quantities for each particle.
 pub(super) const EACH: &[Slip] = &[Slip::WithoutFirstParticle, Slip::WithoutLastParticle, Slip::OnlyFirstParticle];

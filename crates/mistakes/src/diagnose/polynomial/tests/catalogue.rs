@@ -8,7 +8,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, vector_at};
 use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
 
-/// The style of the scenes.
+/// The kind of motion and of bodies in the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Style {
     /// All bodies move, and no two quantities are equal.
