@@ -7,7 +7,7 @@ fn wrong_radii_are_reported_with_their_values() {
     only(PairKind::ParticleEdge, "other-radius", is_reach, |motion| {
         let PairMotion::Edge { radii: [one, two], .. } = *motion else { panic!("no edge") };
         let mut lists = edge_lists(motion);
-        lists[0] = quartic(&Letters { s: one.max(two).powi(2), ..letters(motion) });
+        lists[0] = quartic(&Letters { s: one.max(two) * one.max(two), ..letters(motion) });
         lists
     });
 }
