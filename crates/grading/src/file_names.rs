@@ -96,9 +96,8 @@ mod tests {
 
     #[test]
     fn names_of_people_are_unchanged() {
-        for name in
-            ["alice", "Zoë", "Nguyễn Văn A", "שלמה", "محمد", "कुमार", "山田太郎", "O'Brien-Łoś", "a,b", "=cmd", "ﾀﾛｳ"]
-        {
+        let names = ["Zoë", "Nguyễn Văn A", "שלמה", "محمد", "कुमार", "山田太郎", "ﾀﾛｳ"];
+        for name in names.into_iter().chain(["alice", "O'Brien-Łoś", "a,b", "=cmd"]) {
             assert_eq!(to_printable(OsStr::new(name)), name);
         }
         assert_eq!(to_printable(OsStr::new("Zoe\u{308}")), "Zo\u{eb}");

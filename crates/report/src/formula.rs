@@ -1,4 +1,5 @@
-//! Mathematical signs in formulas: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around formulas do not change.
+//! Mathematical signs in formulas: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around formulas do
+//! not change.
 
 /// Returns a line whose formulas are written with Unicode's mathematical signs.
 ///
@@ -83,7 +84,7 @@ mod tests {
     #[test]
     fn formulas_get_signs_and_sentences_stay() {
         for (line, expected) in [
-            ("It is -x21.d21 instead of -2 x21.d21.", "It is −x₂₁·Δx₂₁ instead of −2 x₂₁·Δx₂₁."),
+            ("It is -x21.d21, not -2 x21.d21.", "It is −x₂₁·Δx₂₁, not −2 x₂₁·Δx₂₁."),
             ("r1^2 + re^2 is used instead of (r1 + re)^2.", "r₁² + rₑ² is used instead of (r₁ + rₑ)²."),
             ("b = (x1-x2).d32 + (dx1-dx2).x32", "b = (x₁−x₂)·Δx₃₂ + (Δx₁−Δx₂)·x₃₂"),
             ("0.05 <= alpha(t) <= 0.95 besides time <= 1.", "0.05 ≤ α(t) ≤ 0.95 besides time ≤ 1."),

@@ -47,11 +47,12 @@ texts! {
     /// An identifier from another system, without control characters.
     Word, r"^[^\x00-\x1f\x7f-\x9f]+$", 255, "10000000000001";
     /// An HTTPS URL to which the service sends requests.
-    HttpsUrl, r"^https://[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?(/[A-Za-z0-9._~/-]*)?$",
-        2000, "https://lms.example.org/mod/lti/auth.php";
+    HttpsUrl, "^https://[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?\
+    (\\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}\
+    (:([1-9][0-9]{3}|[1-5][0-9]{4}))?(/[A-Za-z0-9._~/-]*)?$", 2000, "https://lms.example.org/mod/lti/auth.php";
     /// A host name, with the port if it is not 443.
-    Host, r"^[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?$",
-        255, "lms.example.org";
+    Host, "^[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?\
+    (\\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?$", 255, "lms.example.org";
     /// A nonnegative number with exactly the digits that the grader wrote.
     Decimal, r"^[0-9]{1,9}(\.[0-9]{1,20})?$", 30, "97.5";
     /// The file name of a report.

@@ -54,8 +54,8 @@ fn is_line_excluded_exactly(a: f64, b: f64) -> bool {
     !meets && !zero.is_nan()
 }
 
-/// Returns whether the parabola `a t² + b t + c` is excluded. The number `a` must not be zero, and `b` and `c` must not
-/// both be zero.
+/// Returns whether the parabola `a t² + b t + c` is excluded. The number `a` must not be zero, and `b` and `c` must
+/// not both be zero.
 #[inline]
 fn is_parabola_excluded(a: f64, b: f64, c: f64) -> bool {
     c < 0.0 && (has_no_real_zero(a, b, c) || is_negative_on_unit(a, b, c))

@@ -17,7 +17,8 @@ for word in "$@"; do
         html=*) echo '<p>a report</p>' > "${word#html=}" ;;
     esac
 done
-echo '{"schema": 4, "version": "1.0", "grades": [{"verdict": "wrong", "code": "WA", "points": 50, "max_points": 100, "groups": []}]}' > "$json"
+echo '{"schema": 4, "version": "1.0",
+ "grades": [{"verdict": "wrong", "code": "WA", "points": 50, "max_points": 100, "groups": []}]}' > "$json"
 exit 1
 "#;
 

@@ -88,8 +88,12 @@ if [ $visibility = hidden ]; then
 fi
 cat > "$json" <<END
 {"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": $most, "wall_seconds": $$.5, "groups": [{"name": "Group", "points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
- {"name": "=More", "visibility": "$visibility", "points": $points, "max_points": 90, "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
+ "max_points": $most, "wall_seconds": $$.5, "groups": [
+ {"name": "Group", "points": 10, "max_points": 10,
+  "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
+ {"name": "=More", "visibility": "$visibility", "points": $points, "max_points": 90,
+  "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points},
+   "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]
 "#;

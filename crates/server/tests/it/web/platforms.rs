@@ -199,11 +199,15 @@ async fn many_scores_make_one_column(fresh: Fresh) {
     assert_eq!(columns.len(), 1, "{columns:?}");
 }
 
+/// Returns a member of a platform's roster.
+fn member(id: &str, role: &str, status: &str) -> Value {
+    json!({"user_id": id, "status": status, "roles": [role], "given_name": "Given", "family_name": id})
+}
+
 async fn rosters_are_read_to_their_end(fresh: Fresh) {
     let (server, admin, platform) = start(&fresh, &[]).await;
     let teacher = connect(&server, &platform);
     let (ada, _) = arrive(&server, &platform, ("ada", LEARNER), |_| {});
-    let member = |id: &str, role: &str, status: &str| json!({"user_id": id, "status": status, "roles": [role], "given_name": "Given", "family_name": id});
     platform.inside().members = vec![
         member("teacher", INSTRUCTOR, "Active"),
         member("ada", LEARNER, "Active"),

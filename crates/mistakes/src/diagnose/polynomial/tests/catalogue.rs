@@ -1,11 +1,13 @@
 //! The students of the catalogue on small random scenes: a mistake is explained correctly, and a correct variant is not
 //! explained at all.
-use super::{Explanation, Numbers, PairKind, Sample, explain_polynomials, particle_lists, samples};
+use super::{Explanation, Numbers, PairKind, Sample, Subject, compare, explain_polynomials, particle_lists, samples};
+use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{Pair, PairMotion, PointMotion},
 };
 use fosssim_num::vector::{Vec2, vector_at};
+use fosssim_student::assignments::t2m2::{Inputs, formulas};
 use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
 
 /// The kind of motion and of bodies in the scenes.
@@ -240,4 +242,27 @@ fn odd_weights_from_few_samples_are_not_named() {
         explain_polynomials(&few).iter().map(|one| one.key.as_str()).collect::<Vec<_>>(),
         [Explanation::UNEXPLAINED]
     );
+}
+
+/// For each polynomial, every formula gives the polynomial that the fair rules expect, including the right quintic.
+#[test]
+fn the_tables_are_the_formulas_of_the_fair_rules() {
+    let mut numbers = Numbers(5);
+    for kind in PairKind::ALL {
+        for _ in 0..200 {
+            let motion = numbers.motion(kind);
+            let (judged, inputs) = (BoundedPairMotion::from(&motion).polynomials(), Inputs::new(&motion));
+            for (number, &subject) in Subject::all_of_kind(kind).iter().enumerate() {
+                for (form, formula) in formulas::readings(subject).iter().enumerate() {
+                    let is_other = subject == Subject::EdgeApproach && form == 1;
+                    let right =
+                        if is_other { judged.other_form(number).expect("an edge") } else { judged.polynomial(number) };
+                    let values: Vec<f64> = right.iter().map(|coefficient| coefficient.value).collect();
+                    let table = formula.polynomial(&inputs);
+                    assert!(compare::polynomial_matches(&table, &values, 1.0), "{subject:?}: {table:?} and {right:?}");
+                    assert_eq!(table.len(), right.len());
+                }
+            }
+        }
+    }
 }

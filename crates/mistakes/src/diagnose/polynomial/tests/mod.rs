@@ -4,10 +4,9 @@ mod radius;
 
 use super::*;
 use crate::diagnose::{CoefficientGuess, ExamplePlace, Substitute, Weight};
-use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::sim::{Pair, PairMotion, PointMotion};
 use fosssim_num::{polynomial::trim, vector::Vec2};
-use fosssim_student::assignments::t2m2::{Input, Inputs, Reading, formulas};
+use fosssim_student::assignments::t2m2::{Input, Reading};
 
 /// A generator of numbers without a pattern, the same in every run.
 struct Numbers(u64);
@@ -233,29 +232,6 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
         lists
     };
     assert_eq!(explain_polynomials(&samples(PairKind::ParticleEdge, 300, student)), []);
-}
-
-/// For each polynomial, every formula gives the polynomial that the fair rules expect, including the right quintic.
-#[test]
-fn the_tables_are_the_formulas_of_the_fair_rules() {
-    let mut numbers = Numbers(5);
-    for kind in PairKind::ALL {
-        for _ in 0..200 {
-            let motion = numbers.motion(kind);
-            let (judged, inputs) = (BoundedPairMotion::from(&motion).polynomials(), Inputs::new(&motion));
-            for (number, &subject) in Subject::all_of_kind(kind).iter().enumerate() {
-                for (form, formula) in formulas::readings(subject).iter().enumerate() {
-                    let is_other = subject == Subject::EdgeApproach && form == 1;
-                    let right =
-                        if is_other { judged.other_form(number).expect("an edge") } else { judged.polynomial(number) };
-                    let values: Vec<f64> = right.iter().map(|coefficient| coefficient.value).collect();
-                    let table = formula.polynomial(&inputs);
-                    assert!(compare::polynomial_matches(&table, &values, 1.0), "{subject:?}: {table:?} and {right:?}");
-                    assert_eq!(table.len(), right.len());
-                }
-            }
-        }
-    }
 }
 
 #[test]
@@ -484,7 +460,10 @@ fn small_slips_in_quadratics_are_named() {
     overlap("term-factor", &weight(1, "x21.d21", -1.0, -2.0), &|lists| lists[0][1] *= 0.5);
     overlap("term-sign", &weight(2, "d21.d21", 1.0, -1.0), &|lists| lists[0][0] *= -1.0);
     overlap("cut", &is(PolynomialDetail::LastOnly(2)), &|lists| lists[0][0] = 0.0);
-    let is_tiny = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Factor { power: 0, factor } if (factor - 1.0 - 1e-9).abs() < 1e-14);
+    let is_tiny = |detail: &PolynomialDetail| match detail {
+        PolynomialDetail::Factor { power: 0, factor } => (factor - 1.0 - 1e-9).abs() < 1e-14,
+        _ => false,
+    };
     overlap("coefficient-factor", &is_tiny, &|lists| lists[0][2] *= 1.0 + 1e-9);
     overlap("coefficient-sign", &is(PolynomialDetail::Factor { power: 0, factor: -1.0 }), &|lists| lists[0][2] *= -1.0);
     overlap("term-sign", &weight(0, "x21.d21", 1.0, -1.0), &|lists| lists[1][1] *= -1.0);
