@@ -1,8 +1,7 @@
 //! Finds the decisions of the reference's own run that depend on round-off. A scene with such a decision demands more
 //! of programs than round-off allows.
 //!
-//! It simulates and certifies only; a trace is not needed. Collision handling `simple` decides without polynomials and
-//! is not checked.
+//! This needs only the scene, and no trace. Collision handling `simple` decides without polynomials and is not checked.
 use super::{contact, formulas::BoundedPairMotion};
 use fosssim_findings::fair::Borderline;
 use fosssim_model::{
@@ -64,8 +63,8 @@ mod tests {
 
     #[test]
     fn a_ball_that_ends_its_step_in_touch_is_borderline() {
-        // After the first step the distance of the ball is 0.1, its radius, except for a rounding error: half of the
-        // step's displacement is 0.9.
+        // The ball starts at a distance of 1 with a speed of 1.8. After the first step its distance is its radius, 0.1,
+        // except for a rounding error.
         let ball = r#"<particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>"#;
         let found = found(ball);
         assert!(found.iter().any(|decision| decision.step == 1), "{found:?}");

@@ -40,7 +40,7 @@ fn explain_parity_rejection(outcome: &Outcome, judgement: &Judgement) -> Cause {
         FindingDetail::WrongNormal { .. } => Cause::AbsoluteNormals,
         _ if is_borderline => Cause::BorderlineDecision,
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
-        // If a certain decision differs nevertheless, the cause is the right form of the approach polynomial.
+        // If round-off cannot change the decision, the cause is the right form of the approach polynomial.
         _ if judgement.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
     }
@@ -108,7 +108,7 @@ mod tests {
         samples::changed_reference_trace(&samples::scene(BOUNCE_SCENE), change)
     }
 
-    /// Multiplies every coefficient.
+    /// Multiplies every coefficient by `factor`.
     fn scaled(frames: &mut [Frame], factor: f64) {
         for frame in frames {
             replace_polynomials(frame, |_, coefficients| coefficients.iter().map(|c| factor * c).collect());
@@ -148,7 +148,7 @@ mod tests {
     fn large_numbers_are_the_originals_fault() {
         let outcome = judge_by_both(&changed_trace(|frames| scaled(frames, 1.0 + 1e-12)));
         assert_eq!(find_cause(&outcome), None, "a small factor passes both");
-        // The factor determines whether the rescaling rounds the other way.
+        // It depends on the factor whether the original's rescaling rounds differently.
         let factors = [3.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0].map(|n| 1e12 / n);
         let causes = factors.map(|factor| find_cause(&judge_by_both(&changed_trace(|frames| scaled(frames, factor)))));
         assert!(causes.contains(&Some(Cause::AbsoluteCoefficients)), "{causes:?}");

@@ -8,20 +8,20 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// The result of comparing a right polynomial.
+/// The comparison of a polynomial that is right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
-    /// The positive factor of the logged polynomial, or `None` if its coefficients are only round-off.
+    /// The positive factor of the logged polynomial, or `None` if its coefficients do not show it.
     pub scale: Option<f64>,
     /// The largest share of its tolerance that a coefficient uses, from 0 to 1. For a polynomial that is accepted
-    /// early, this is an upper bound of at most a quarter.
+    /// without bounds, this is an upper bound of at most a quarter.
     pub tolerance_share: f64,
 }
 
 /// The fault of a wrong polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mismatch {
-    /// The polynomial has a coefficient of a higher power than expected, and larger than round-off.
+    /// The logged polynomial has more coefficients than allowed.
     TooLong,
     /// A coefficient is wrong.
     Coefficient {
@@ -37,12 +37,13 @@ pub enum Mismatch {
 }
 
 /// Compares two polynomials. `expected` is complete; `actual` is the logged list, from which the course's library has
-/// dropped small leading coefficients. `hints` are factors of polynomials of the same kind, which are used if the
-/// polynomial is too short to show its own.
+/// dropped small leading coefficients. `hints` are factors of other polynomials of the same kind. They are tried if the
+/// polynomial is wrong with the factor that is fitted to its own coefficients.
 ///
 /// If the expected polynomial is zero except for round-off, every finite polynomial is right, because some programs
-/// divide polynomials by their size; [`round_off_factor`] returns the factor that it needs. If the expected polynomial
-/// has NaN because of the trace's own state, the logged polynomial must have NaN as well.
+/// divide polynomials by their size. [`round_off_factor`] returns the factor that such a polynomial needs. If the
+/// expected polynomial is exactly zero, the logged one must be zero. If an expected coefficient is not finite because
+/// of the trace's own state, the logged coefficient must not be finite either.
 #[inline]
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match match_if_clear(expected, actual).or_else(|| match_if_right(expected, actual)) {
@@ -53,23 +54,23 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
 
 /// The comparison of two coefficient lists of equal length, without bounds.
 ///
-/// The factor is that of the sums of absolute values. Bounds are at least as large as the values, so a deviation below
-/// [`FAIR_NORM_UNITS`] of the sum of the absolute coefficients is right. Nearly all right coefficients deviate much
-/// less, and are called right by a wide margin.
+/// The factor is the ratio of the sums of absolute values. Bounds are at least as large as the values, so a deviation
+/// below [`FAIR_NORM_UNITS`] of the sum of the absolute coefficients is right. Nearly all right coefficients deviate
+/// much less. They are called right by a wide margin.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' absolute values.
     pub sum: f64,
     /// The sum of the logged coefficients' absolute values.
     pub logged_sum: f64,
-    /// The factor of the logged coefficients.
+    /// The factor of the logged coefficients: `logged_sum / sum`.
     pub scale: f64,
-    /// The largest deviation of a coefficient.
+    /// The largest deviation of a logged coefficient from `scale` times the expected one.
     pub worst_deviation: f64,
 }
 
-/// The minimum sum of coefficients that neither overflows nor underflows in the computation. Outside this range, bounds
-/// are computed.
+/// The smallest sum of absolute coefficients with which the comparison cannot underflow. Below it, and above
+/// [`MAX_SAFE_SUM`], bounds are computed.
 const MIN_SAFE_SUM: f64 = 1e-100;
 pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
@@ -123,8 +124,9 @@ impl Similarity {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged_sum
     }
 
-    /// Returns whether the coefficients are right by a wide margin. If both lists have lost coefficients, the lost ones
-    /// are small only with factors near 1.
+    /// Returns whether the coefficients are right by a wide margin. `is_whole` is whether no leading coefficient was
+    /// dropped. If one was, the factor must be at most [`FAIR_LOSS_FACTOR`], so that the dropped coefficient is small
+    /// in both lists.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
@@ -153,13 +155,13 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 }
 
 /// Returns whether a logged polynomial is provably wrong with every factor, without a search for the best factor.
-/// `false` means unknown.
+/// If the result is `false`, the polynomial may be right or wrong.
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
-/// deviates by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
-/// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it. If values are compared instead, their
-/// tolerances are smaller. Each time therefore allows an interval of factors, and if two of these are disjoint there is
-/// no factor.
+/// deviates by less than `MAX_DEVIATION` units of all bounds together. Together, the tolerances of six coefficients are
+/// at most `2 FAIR_UNITS + 6 FAIR_NORM_UNITS` units of the sum of bounds. If values are compared instead, their
+/// tolerances are smaller. Each time therefore allows an interval of factors. If two of these intervals are disjoint,
+/// no factor fits.
 pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// The maximum deviation: all tolerances, and the rounding errors of this computation.
     const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
@@ -169,8 +171,8 @@ pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> 
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
     let room = MAX_DEVIATION * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
-    // Coefficients below the limit may be missing with any factor. If both polynomials lack them, they may have been
-    // slightly larger.
+    // Leading coefficients below the library's limit may be missing with any factor. If both polynomials lack them,
+    // they may be larger by [`FAIR_LOSS_FACTOR`].
     let logged_room = rounding + missing as f64 * FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
@@ -185,13 +187,13 @@ pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> 
             most = most.min((logged + logged_room) / (right - room));
         }
     }
-    // The rounding errors of the intervals' ends are much smaller.
+    // The rounding errors of the intervals' ends are much smaller than 1e-9.
     least > most + 1e-9 * most.abs()
 }
 
-/// Compares like [`compare`], but only with the best factor. The factor is found once, and one loop compares all
-/// coefficients by the same operations. Returns `None` unless the logged polynomial is complete and right, which is the
-/// usual case.
+/// Compares like [`compare`], but only polynomials of equal length, and only with the best factor. Returns `None` if
+/// the logged polynomial is not right with this factor, or if the expected one is round-off or not finite. Most
+/// polynomials are complete and right.
 fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
@@ -209,7 +211,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
         if !(residual <= tolerance) {
             return None;
         }
-        // The multiplication is tried first, because it shows whether the share can be larger.
+        // The multiplication shows whether the share can be larger, and saves most divisions.
         if residual > (1.0 - 1e-12) * (share * tolerance) {
             share = share.max(residual / tolerance);
         }
@@ -217,7 +219,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     Some(Match { scale: Some(scale), tolerance_share: share })
 }
 
-/// Compares like [`compare`], for polynomials of every kind.
+/// Compares like [`compare`], without its shortcuts.
 fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
@@ -250,7 +252,7 @@ fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) ->
         matches.find_map(Result::ok).map(|share| Match { scale: None, tolerance_share: share })
     };
     let Some(fitted) = fit_factor(right, logged, missing) else {
-        // The remaining coefficients show no factor, so the factor is 1 for this polynomial.
+        // No logged coefficient exceeds round-off, so none shows the factor, and 1 is used.
         return judge_with_scale(right, logged, missing, 1.0)
             .map(|share| Match { scale: None, tolerance_share: share });
     };
@@ -258,7 +260,7 @@ fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) ->
     if first.is_ok() {
         return first;
     }
-    // The remaining coefficients may show the factor only inaccurately.
+    // The logged coefficients may show the factor only inaccurately.
     if let Some(found) = hinted() {
         return Ok(found);
     }
@@ -286,7 +288,8 @@ pub(super) fn compare_with_one(expected: &[BoundedValue], actual: &[f64]) -> Res
     judge_with_scale(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
 }
 
-/// Checks that NaN and infinity are in the same places.
+/// Checks that each logged coefficient is finite exactly if `should` returns true for the expected one. Otherwise
+/// returns the first mismatch.
 fn check_non_finite_positions(
     should: fn(&BoundedValue) -> bool,
     right: &[BoundedValue],
@@ -313,8 +316,8 @@ fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
-/// Returns the best factor. Each coefficient is weighted by its precision. The result is `None` if all coefficients are
-/// round-off. If the factor is not positive or not finite, the polynomial is wrong.
+/// Returns the factor that fits the logged coefficients best, each weighted by its precision. Returns `None` if all of
+/// them are round-off. If the factor is not positive or not finite, the polynomial is wrong.
 fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = bound_sum(right);
     let (mut products, mut squares) = (0.0, 0.0);
@@ -328,15 +331,15 @@ fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<
     (squares > 0.0).then(|| products / squares)
 }
 
-/// Returns the allowed deviation of a coefficient, in units of the roundoff. Both sides are rounded. A coefficient that
-/// is small compared with the others may have the rounding errors of all of them: some correct programs interpolate,
-/// which changes no decision on [0, 1].
+/// Returns the allowed deviation of a coefficient, in units of the roundoff. The bound counts twice, because both sides
+/// are rounded. A coefficient that is small compared with the others may have the rounding errors of all of them: some
+/// correct programs interpolate polynomials, and the resulting errors change no decision on [0, 1].
 fn allowed_units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
 
-/// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive always
-/// fails.
+/// Returns the used share of the tolerance or, as the error, the tolerance that is exceeded. If the factor is not
+/// positive, the error is NaN.
 fn check_coefficient(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
     if !(scale > 0.0) {
         return Err(f64::NAN);
@@ -358,9 +361,10 @@ fn bound_sum(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// Returns the factors with which a logged polynomial would be right, although it does not show its own factor. These
-/// factors are large enough for its coefficients to be round-off, and small enough for the course's library to drop the
-/// missing ones. Returns `None` if the polynomial shows its factor, or if there is no such factor.
+/// Returns the smallest and the largest factor with which a logged polynomial would be right, although it does not show
+/// its own factor. All factors between them are large enough for its coefficients to be round-off, and small enough for
+/// the course's library to drop the missing ones. Returns `None` if the polynomial shows its factor, is too long, or
+/// has no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -374,10 +378,12 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     (least.is_finite() && least <= most).then_some([least, most])
 }
 
-/// Twice the tolerance of a coefficient that is much larger than all others, in units of its bound.
+/// The tolerance of a coefficient that is much larger than all others, in units of its bound. Both sides are rounded,
+/// so it is twice [`FAIR_UNITS`].
 const DOUBLE_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// Returns the largest factor with which the course's library drops all of `dropped`.
+/// Returns the largest factor with which the course's library drops all of `dropped`, or infinity if it drops them with
+/// any factor.
 fn max_factor(dropped: &[BoundedValue]) -> f64 {
     MIN_LEADING_COEFFICIENT
         / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
@@ -390,9 +396,9 @@ pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// Returns the factors that a right polynomial claims, but does not show. Such a polynomial has only one coefficient of
-/// significant size, and lacks others that the course's library would keep with the factor 1. Returns `None` if the
-/// polynomial shows its factor, or lacks nothing.
+/// Returns the smallest and the largest factor that a right polynomial claims, but does not show. Such a polynomial has
+/// only one coefficient above round-off, and lacks others that the course's library would keep with the factor 1.
+/// Returns `None` for all other polynomials.
 pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -405,14 +411,16 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 }
 
 /// Returns the smallest factor above 1 with which a polynomial would be right, if the expected polynomial is zero
-/// except for round-off. Returns `None` if the polynomial needs no factor, if the expected polynomial is larger, or if
-/// the polynomial has the size 1 to which some programs scale polynomials.
+/// except for round-off. Returns `None` if the polynomial needs no factor, if the expected polynomial is larger than
+/// round-off, or if the largest absolute coefficient or the sum of squares is 1. Some programs scale their polynomials
+/// to this size.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
     let norm = bound_sum(expected);
     if !(norm > 0.0 && norm.is_finite() && is_round_off(expected)) {
         return None;
     }
-    // The size that counts as round-off of the expected polynomial, plus the rounding errors of both sides.
+    // The divisor is the largest size that counts as round-off of the expected polynomial, plus the rounding errors of
+    // both sides.
     let least = actual.iter().map(|s| s.abs()).sum::<f64>() / (DOUBLE_TOLERANCE * norm);
     let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let squares = actual.iter().map(|s| s * s).sum::<f64>();

@@ -36,8 +36,8 @@ fn evaluate(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Returns the value like [`evaluate`], but allows for leading coefficients that the course's library drops with a
-/// factor near 1.
+/// Evaluates like [`evaluate`], with a tolerance that also covers leading coefficients that the course's library drops
+/// if the program multiplies its polynomials by a factor near 1.
 fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT).sum();
@@ -45,11 +45,11 @@ fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, tolerance + missing)
 }
 
-/// A polynomial's value at a time, and the tolerance of that value.
+/// A function that returns a polynomial's value at a time, and the tolerance of that value.
 type EvaluateFn = fn(&[BoundedValue], f64) -> (f64, f64);
 
 /// Returns whether a pair may come into contact at time `t`. No polynomial may be negative then. Unless the step starts
-/// at `t`, one polynomial must become positive.
+/// at `t`, one polynomial must be zero then. Both hold within the tolerances.
 fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
@@ -59,10 +59,10 @@ fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> boo
     none_is_negative && (t == 0.0 || values().any(|(value, tolerance)| value.abs() <= tolerance))
 }
 
-/// Returns whether a pair may first be in contact at time `t`: contact is possible then, and the polynomials were not
-/// all positive between `t` and the reference's time.
+/// Returns whether a pair may first be in contact at time `t`: `t` is near the reference's time `own`, or contact is
+/// possible at `t`, and the polynomials are not all positive between the two times.
 fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: EvaluateFn) -> bool {
-    // If a collision is certain between the two times, neither of them is the first.
+    // If contact is certain between the two times, the later one is not the time of the first contact.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
             let between = own + part * (t - own);
@@ -76,14 +76,15 @@ fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: EvaluateFn
     is_near || is_possible(expected, t, value) && undecided()
 }
 
-/// Returns whether a time of impact is right. It may be the reference's, whose polynomials may have lost coefficients,
-/// or follow from the complete polynomials.
+/// Returns whether the time of impact `t` is right. It is right if it is near the reference's time `own`, whose
+/// polynomials may have lost coefficients, or if it fits the complete polynomials.
 pub(super) fn is_right_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME_SHARE;
     is_near || time_fits(expected, possible_time(expected), t, evaluate_without_losses)
 }
 
-/// Compares a logged contact with the reference's, for a step from the context's state.
+/// Compares a logged contact with the reference's contact `own`, and returns the finding if it is wrong. `before` is
+/// the state at the start of the step.
 pub(super) fn compare_hit(
     before: &State,
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
@@ -104,7 +105,8 @@ pub(super) fn compare_hit(
     compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
 }
 
-/// Compares a logged contact with the expected one, for a pair whose collision is uncertain.
+/// Compares a logged contact with the expected one, for a pair whose collision is uncertain, and returns the finding if
+/// it is wrong.
 pub(super) fn compare_possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
@@ -181,7 +183,7 @@ impl<'a> Tolerances<'a> {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest_size(&own.positions);
         let speed = largest_size(&own.velocities);
-        // If contacts have responses, velocities are computed from displacements over the time step.
+        // These two collision types compute velocities from displacements over the time step.
         let from_positions = match context.scene.collision {
             Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
             Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
@@ -259,7 +261,7 @@ pub(super) fn logged_decision(logged: LoggedImpulse) -> Option<Decision> {
     is_usable.then_some(Decision::Hit { time, normal })
 }
 
-/// Returns whether the root finder provably ends with `coefficients`.
+/// Returns whether the root finder provably ends for `coefficients`.
 #[inline]
 pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
     coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
@@ -279,7 +281,7 @@ pub(super) fn find_time(polynomials: &[Polynomial]) -> Option<f64> {
     first_time(polynomials).ok()
 }
 
-/// Returns the decision that follows from the polynomials, if round-off cannot change it.
+/// Returns whether the pair collides according to the polynomials, or `None` if round-off may change this.
 ///
 /// If a parabola's inputs have few digits, every way to evaluate the formulas is exact. Then no decision depends on
 /// round-off, and even a contact at the very end of the step is certain.
@@ -297,8 +299,8 @@ pub fn certain_decision(motion: &BoundedPairMotion, expected: &ExpectedPolynomia
     }
 }
 
-/// The number of input bits for which a parabola's coefficients, of fourth degree in the inputs, and its discriminant
-/// are exact.
+/// The largest number of bits of the inputs with which a parabola's coefficients and discriminant are exact. The
+/// coefficients are of fourth degree in the inputs.
 const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may change the decision.
@@ -311,7 +313,7 @@ pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolyn
     certain_decision(motion, expected).is_none() && !is_certain()
 }
 
-/// Returns a time of impact for a pair whose collision is uncertain.
+/// Returns a time of impact for a pair whose collision is uncertain, or 1 if there is none.
 pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
     let earliest = decide(&expected.polynomials()[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))

@@ -59,7 +59,8 @@ impl<'a> Context<'a> {
 }
 
 impl Records<'_> {
-    /// Returns whether the step starts from ordinary states. The geometric part starts from the mid record.
+    /// Returns whether the step starts from ordinary states. The geometric part of a hybrid step starts from the mid
+    /// record, so this must be ordinary as well.
     pub fn starts_from_ordinary_states(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);

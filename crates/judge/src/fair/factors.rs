@@ -1,4 +1,4 @@
-//! The factors that a trace's polynomials show.
+//! Collects the factors by which a program multiplies its polynomials, as the trace's polynomials show them.
 use fosssim_model::sim::{PairKind, PairKindMap};
 use fosssim_num::tolerances::FAIR_OUTLIER_DEVIATIONS;
 
@@ -16,7 +16,7 @@ pub struct FactorStatistics {
     squares: i64,
 }
 
-/// The factors of all kinds of pairs and numbers of polynomials.
+/// The factors for each kind of pair and each number of a polynomial.
 pub type FactorsByPolynomial = PairKindMap<[FactorStatistics; PairKind::MAX_POLYNOMIALS]>;
 
 impl Default for FactorStatistics {
@@ -66,8 +66,8 @@ impl FactorStatistics {
         (self.count > 0).then_some([self.least, self.greatest])
     }
 
-    /// Returns the usual factors: the whole range except outliers, which prove nothing about missing polynomials.
-    /// `None` without factors.
+    /// Returns the smallest and the largest usual factor, or `None` if there are no factors. Outliers are left out,
+    /// because they prove nothing about missing coefficients.
     pub(super) fn usual_range(&self) -> Option<[f64; 2]> {
         let [least, greatest] = self.range()?;
         let of_all = |sum: i64| sum as f64 / self.count as f64;

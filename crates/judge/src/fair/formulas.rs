@@ -40,9 +40,10 @@ impl BoundedPointMotion {
 /// The objects of a pair and their motion.
 #[derive(Debug, Clone, Copy)]
 pub enum BoundedPairMotion {
-    /// The pair consists of two discs. The value is the sum of their radii.
+    /// The pair consists of two discs. The values are their motions and the sum of their radii.
     Particles([BoundedPointMotion; 2], BoundedValue),
-    /// The pair consists of a disc and an edge with two endpoints. The value is the sum of the radii.
+    /// The pair consists of a disc and an edge with two endpoints. The values are the motions of the three points and
+    /// the sum of the radii.
     Edge([BoundedPointMotion; 3], BoundedValue),
     /// The pair consists of a disc and a half-plane. The values are the disc's motion and radius, and the point and the
     /// normal of the half-plane as the scene gives them.
@@ -52,7 +53,7 @@ pub enum BoundedPairMotion {
 /// The coefficients of a polynomial, highest power first, with nothing dropped.
 pub type BoundedCoefficients = [BoundedValue; MAX_COEFFICIENTS];
 
-/// The polynomials of a pair. Each uses the last `sizes()` entries.
+/// The polynomials of a pair. Polynomial `number` uses the last `sizes[number]` entries of its array.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExpectedPolynomials {
     polynomials: [BoundedCoefficients; 4],
@@ -67,13 +68,14 @@ impl ExpectedPolynomials {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
-    /// Returns all polynomials. Unused places are empty.
+    /// Returns all polynomials. Unused entries are empty.
     pub fn polynomials(&self) -> [&[BoundedValue]; 4] {
         std::array::from_fn(|number| self.polynomial(number))
     }
 
     /// Returns the other accepted form of polynomial `number`: the mathematically right approach polynomial of a
     /// particle and an edge.
+    /// Other polynomials have only one form.
     pub fn other_form(&self, number: usize) -> Option<&[BoundedValue]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }
@@ -133,7 +135,8 @@ impl BoundedPairMotion {
         }
     }
 
-    /// Widens the motion: end positions may additionally deviate by `deviations` (2N, scene units).
+    /// Widens the motion by possible deviations of end positions. `deviations` contains two coordinates for each
+    /// particle of the scene, in the scene's units.
     pub fn widen(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
@@ -141,7 +144,8 @@ impl BoundedPairMotion {
                 // The object is provably at rest, independent of other objects.
                 return;
             }
-            // The unit is the running error bound; the tolerance is twice FAIR_UNITS of it.
+            // The comparison multiplies bounds by `2 FAIR_UNITS * UNIT_ROUNDOFF`, so deviations are divided by this
+            // number.
             let units = FAIR_SENSITIVITY_FACTOR / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
             way.shift.x.bound += units * deviations[2 * particle];
             way.shift.y.bound += units * deviations[2 * particle + 1];
@@ -162,9 +166,9 @@ impl BoundedPairMotion {
         matches!(self, Self::Edge(..))
     }
 
-    /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power
-    /// of two, with factors below two to the power `bits`. Polynomials of a particle and a moving edge have higher
-    /// degrees, whose zeros are never exact.
+    /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are integers below two to
+    /// the power `bits`, times one power of two. Polynomials of a particle and a moving edge have higher degrees, and
+    /// their zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
         let parts = |v: BoundedVector| [v.x.value, v.y.value];
         match self {

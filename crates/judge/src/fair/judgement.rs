@@ -13,19 +13,19 @@ use fosssim_model::sim::{PairKind, PairKindMap, StepError};
 /// The maximum number of borderline decisions that are kept as examples.
 const MAX_EXAMPLES: usize = 8;
 
-/// The maximum number of decisions of a small scene.
+/// The minimum number of borderline decisions of an undecided trace, so that small scenes are never undecided.
 const SMALL_SCENE_DECISIONS: u64 = 64;
 
 /// The fair rules' judgement of a trace so far, and the polynomials that can be judged only at its end.
 #[derive(Debug, Default)]
 pub(crate) struct JudgementBuilder {
     judgement: Judgement,
-    /// The factors of polynomials.
+    /// The factors that polynomials show.
     factors: FactorsByPolynomial,
     /// The factors claimed by single coefficients.
     claimed_factors: FactorsByPolynomial,
-    /// The number of polynomials that are identical to the reference's. Approaches count once per step, because they
-    /// show nothing for objects at rest.
+    /// The number of polynomials that are identical to the reference's. Approach polynomials of a kind count at most
+    /// once per step, because they show nothing for objects at rest.
     identical_polynomials: PairKindMap<[u64; PairKind::MAX_POLYNOMIALS]>,
     /// The polynomials that depend on the program's factors, step by step.
     pending: Vec<StepPending>,
@@ -102,9 +102,9 @@ impl JudgementBuilder {
         self.pending.extend(open);
     }
 
-    /// Returns the finding about polynomials that depend on factors, with the usual factors of the trace so far. The
-    /// usual factors come from other polynomials and from identical ones. Without both, the factors are those that all
-    /// polynomials claim, or otherwise 1.
+    /// Returns the finding about pending polynomials if they are wrong with the usual factors of the trace so far.
+    /// Usual factors are those that other polynomials show, and 1 for polynomials that are identical to the
+    /// reference's. If there are none, the factors that polynomials claim are used, or otherwise 1.
     fn finding(&self, pending: &PendingPolynomials) -> Option<Finding> {
         let (kind, number) = pending.place;
         if pending.cause == PendingCause::RoundOff {
@@ -166,18 +166,18 @@ impl JudgementBuilder {
         }
     }
 
-    /// Returns whether most decisions are borderline and differ from the reference's. Every correct program has a few
-    /// such decisions, but not most.
+    /// Returns whether most decisions are borderline and differ from the reference's. A correct program has a few such
+    /// decisions, but they are not the majority.
     fn is_undecided(&self) -> bool {
         self.judgement.borderline >= SMALL_SCENE_DECISIONS && self.judgement.borderline > self.judgement.decisions / 2
     }
 
-    /// Stops judging, so that later steps are not judged.
+    /// Records that judging stops before `step`.
     pub(crate) fn stop_judging(&mut self, step: u32) {
         self.judgement.first_unjudged_step = Some(step);
     }
 
-    /// Computes the verdict.
+    /// Returns the complete judgement, with its verdict.
     pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
         if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
             self.judgement.first_unjudged_step.get_or_insert(step);
@@ -214,7 +214,8 @@ fn is_constant([least, greatest]: [f64; 2]) -> bool {
     greatest - least <= 1e-9 * least
 }
 
-/// Returns whether a finding is a consequence of the finding about a polynomial.
+/// Returns whether a finding may be a consequence of the finding about a polynomial: it is about a later step, or about
+/// a decision in the same step.
 fn is_consequence(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision

@@ -6,8 +6,8 @@
 //! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
 //!    finds the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric
 //!    part at its mid record. A mistake is therefore counted once, at the stage where it is made. If the time of impact
-//!    of its polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead
-//!    the root finder to a decision that differs from the reference's, both decisions are accepted.
+//!    of its polynomials is the reference's except for round-off, the reference's time is used. If right polynomials
+//!    lead the root finder to a decision that differs from the reference's, both decisions are accepted.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
 //!    bound. A small leading coefficient may be missing, because the course's library drops it. The factor must make it
 //!    small: either two coefficients show this factor, or it is usual in the trace, which is known only at the trace's
@@ -15,13 +15,14 @@
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by
 //!    [`FAIR_SENSITIVITY_FACTOR`] times the effect of such roundings of the step's input on its result.
 //! 4. A decision that such roundings can change is borderline: it is followed and counted as borderline, never as
-//!    wrong. However, the place and the time of a collision must be right. Coefficients that were lost because of a
-//!    factor do not count as round-off: decisions and times of impact are compared with those of the whole polynomials.
-//!    Coefficients that a factor keeps, although the course's library drops them from the reference's polynomials, are
-//!    followed.
+//!    wrong. However, the normal and the time of such a collision must be right. Coefficients that were lost because of
+//!    a factor do not count as round-off: decisions and times of impact are compared with those of the whole
+//!    polynomials. Coefficients that a factor keeps, although the course's library drops them from the reference's
+//!    polynomials, are followed.
 //! 5. It checks everything: the first record, mid records, times of impact, repeated contacts, and bytes after the last
 //!    record.
-//! 6. A step from or to a state without a result is never right.
+//! 6. A step from or to a state that has no meaningful continuation is never right, unless the reference itself reaches
+//!    such a state.
 //!
 //! A step with records identical to the reference's needs none of this. Polynomials that are right by a wide margin
 //! (`follower::quick_matches`) need no bounds.

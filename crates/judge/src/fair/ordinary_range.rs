@@ -7,6 +7,7 @@ use fosssim_num::{
 };
 
 /// The range of ordinary states of a scene.
+/// A state is outside if it exceeds a limit by more than [`FAIR_REACH_FACTOR`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OrdinaryRange {
     /// The largest size of a position.
@@ -34,7 +35,8 @@ impl OrdinaryRange {
         self.find_outside(state).is_none()
     }
 
-    /// Returns the first particle whose state is outside the range.
+    /// Returns the first particle whose state is outside the range, or particle 0 if all particles together are too
+    /// close. Returns `None` if every value is in the range.
     pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH_FACTOR * most);
@@ -63,7 +65,7 @@ pub(super) fn largest_size(vectors: &[f64]) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// Returns the extent of all points together, or 0 for a single point.
+/// Returns the extent of all points together, or 0 for fewer than two points.
 fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let [x, y] = points.fold([none; 2], |[x, y], point| [widen(x, point.x), widen(y, point.y)]);

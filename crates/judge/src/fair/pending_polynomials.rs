@@ -5,7 +5,7 @@ use fosssim_model::sim::PairKind;
 /// The empty range of factors, for a polynomial that is right only in the other form.
 pub(super) const NO_FACTORS: [f64; 2] = [f64::INFINITY, 0.0];
 
-/// The reason why polynomials are right only with some factors.
+/// The reason why polynomials are right only if the program's factor has certain values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PendingCause {
     /// The polynomials lack coefficients that the course's library drops with some factors.
@@ -13,7 +13,7 @@ pub(crate) enum PendingCause {
     /// The polynomials show no factor themselves, but are right only if the program's factor has certain values.
     Claim,
     /// The polynomials are larger than round-off, although the right ones are only round-off. A program that divides
-    /// polynomials by their size has such polynomials, and its factors differ.
+    /// polynomials by their size has such polynomials, and its factors differ from polynomial to polynomial.
     RoundOff,
 }
 
@@ -25,9 +25,9 @@ pub(crate) struct PendingPolynomials {
     pub place: (PairKind, usize),
     /// The form in which the polynomials are right. If there is only one form, any form is accepted.
     pub form: Form,
-    /// The reason why the polynomials depend on factors.
+    /// The reason why the polynomials depend on the program's factor.
     pub cause: PendingCause,
-    /// The number of polynomials in the step.
+    /// The number of such polynomials in the step.
     pub count: u64,
     /// The largest lower bound of the factors, and the finding for smaller factors.
     pub least_factor: (f64, Finding),

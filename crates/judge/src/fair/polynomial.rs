@@ -76,7 +76,8 @@ impl StepJudgement {
             }
             PolynomialJudgement::DependsOnFactor
         };
-        // In each of its forms, the expected polynomial is only round-off, and the logged one is larger.
+        // A polynomial depends on its factor if the expected one is only round-off in each of its forms, and the logged
+        // one is larger.
         let forms = std::iter::once(own).chain(expected.other_form(number));
         let least = forms.map(|form| round_off_factor(form, list)).reduce(|one, other| Some(one?.min(other?)));
         if let Some(least) = least.flatten().filter(|_| first.is_ok()) {
@@ -169,7 +170,7 @@ impl StepJudgement {
         }
     }
 
-    /// Adds a polynomial that is right only with the factors `bounds`.
+    /// Adds a polynomial that is right only with the factors of the given range.
     fn add_pending(
         &mut self,
         logged: &LoggedPolynomial<'_>,
@@ -246,8 +247,8 @@ mod tests {
     use fosssim_findings::Role;
     use fosssim_model::sim::{Pair, Pass, Stage};
 
-    /// Returns whether polynomials that are right with factors between consecutive `bounds` are all right with one
-    /// factor.
+    /// Returns whether polynomials, each of which is right with the factors of one range in `bounds`, are all right
+    /// with `factor`.
     fn are_right_with(bounds: &[[f64; 2]], factor: f64) -> bool {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let pass = Pass { stage: Stage::ContinuousTime, index: 0 };

@@ -2,7 +2,7 @@
 //!
 //! The step is repeated from perturbed states, each component changed by a few rounding errors in a fixed random
 //! pattern. The deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994).
-//! Grazing contacts, stiff springs, systems of bad condition and zones of nearly no extent get the tolerance that they
+//! Grazing contacts, stiff springs, ill-conditioned systems and zones of nearly no extent get the tolerance that they
 //! need, and other steps get none.
 use super::{
     context::{Context, FollowedDecision, Records},
@@ -24,18 +24,18 @@ pub(crate) const PERTURBED_RUNS: u64 = 8;
 /// The measured sensitivity of a step: the largest deviations, component by component.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
-    /// The sensitivity of the positions that each detection pass uses, 2N per pass.
+    /// The sensitivity of the positions that each detection pass uses: two coordinates per particle.
     pub passes: Vec<Vec<f64>>,
     /// The sensitivity of the state at the synchronization point.
     pub mid: State,
     /// The sensitivity of the state at the end.
     pub end: State,
-    /// The calls whose decisions change.
+    /// The indices of the calls whose decisions change.
     pub flipped_decisions: Vec<usize>,
 }
 
-/// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from this state, the
-/// sensitivity is unknown and counts as zero, so that only each value's own bounds are used.
+/// Returns the sensitivity of a step whose decisions are known, measured by repetitions. If the unperturbed repetition
+/// has no result, the sensitivity is unknown and counts as zero, so that only each value's own bounds are used.
 pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -125,7 +125,7 @@ impl SignSequence {
 
     /// Returns 1 or -1, the next sign of the sequence.
     fn next(&mut self) -> f64 {
-        // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003), of which only the signs are used.
+        // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003), of which only one bit is used.
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -134,8 +134,9 @@ impl SignSequence {
 }
 
 impl PerturbedRun<'_> {
-    /// Returns the decision for a slightly later or earlier time, with either vector at an edge's end, because no root
-    /// finder is exact.
+    /// Returns a hit at a slightly later or earlier time, because no root finder is exact. The normal is the vector to
+    /// an edge's line in some runs, and the vector to its nearest point in others. Returns `None` in the unperturbed
+    /// run.
     fn decide_at_shifted_time(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {

@@ -78,7 +78,7 @@ impl<'a> ExtraordinarySteps<'a> {
         self.run.as_ref().is_some_and(|run| !run.is_lost)
     }
 
-    /// Returns the first particle at a position that the reference never approaches.
+    /// Returns the finding about the first state that the reference never approaches, if there is one.
     fn find_unreachable(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.find_outside(state)?;

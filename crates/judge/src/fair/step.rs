@@ -19,8 +19,8 @@ use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::has_same_bits};
 const MAX_FLIPS: usize = 4;
 
 /// Judges a step. `identical` states that the states, impulses and polynomials of both records are identical to the
-/// reference's; then only the rest of the records is checked. If this run has no result although the reference has one,
-/// the trace's log causes an endless search.
+/// reference's; then only the rest of the records is checked. If the step has no result although the reference's own
+/// step has one, the cause is an endless root search for logged polynomials.
 pub(crate) fn judge_records(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -91,8 +91,8 @@ fn follow(
     Ok(second)
 }
 
-/// Counts differences between the two records of a step that must agree (trace-format.md 2), and lists that the
-/// course's library cannot have written.
+/// Adds findings for differences between the two records of a step that must agree (trace-format.md 2), and for logs
+/// that the course's library cannot have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.add_finding(Finding { step, frame, detail });

@@ -84,7 +84,7 @@ impl StepJudgement {
         [self.factors[kind][number].last(), 1.0]
     }
 
-    /// Returns the number of polynomials that depend on factors.
+    /// Returns the number of polynomials that are right only with some factors, and are not decided yet.
     pub(super) fn pending_count(&self) -> u64 {
         self.pending.iter().map(|pending| pending.count).sum()
     }

@@ -45,7 +45,7 @@ impl NearPair {
 }
 
 /// Returns how often a step from `before` applied the force of each nearby pair: never, once or twice. The reference's
-/// step ends in `own`. Pairs whose velocities do not show the number are left out.
+/// step ends in `own`, and the trace's in `logged`. Pairs whose velocities do not show the number are left out.
 pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
     let tolerances = Tolerances::from_context(&context, own, None);
@@ -108,6 +108,7 @@ struct NearPairs {
 
 impl NearPairs {
     /// Finds how many times the force of each pair was applied, if the velocities show it.
+    /// Returns `None` for an implicit integrator, for a scene without penalty forces, and for too many pairs.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
             // An implicit integrator combines all forces, so the effect of one force cannot be separated.
@@ -169,8 +170,9 @@ impl NearPairs {
     }
 }
 
-/// Creates, for a contest with a layer, the scene with the force between all pairs. Also returns the pairs whose force
-/// is due at positions `x`, because they overlap without their layers or one object is a half-plane.
+/// Returns, for a contest with a layer, the scene with forces between all pairs. Also returns the pairs whose force is
+/// due at positions `x`: those that overlap without their layers, and those with a half-plane. Returns `None` for other
+/// scenes.
 fn contest_layer(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
         return None;

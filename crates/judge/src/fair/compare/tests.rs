@@ -168,8 +168,7 @@ fn exact_zeros_must_be_zero() {
     assert!(compare(&right, &[1e-11], &[1.0]).is_err());
 }
 
-/// The trace's own states may contain only NaN. Its polynomials then contain none either, and that is not a second
-/// error.
+/// If the trace's own states contain NaN, its polynomials contain NaN as well, and that is not a second error.
 #[test]
 fn no_number_stands_where_none_is_expected() {
     let (lost, kept) = (BoundedValue { value: f64::NAN, bound: f64::NAN }, BoundedValue::from_rounded(0.3));
@@ -180,12 +179,12 @@ fn no_number_stands_where_none_is_expected() {
     }
 }
 
-/// Newton's divided differences of values at 0, 1/4, 1/2, 3/4 and 1 have coefficients with the round-off of all values,
-/// up to some hundred times; it cancels within the step.
+/// Newton's divided differences of values at 0, 1/4, 1/2, 3/4 and 1 have coefficients with up to some hundred times the
+/// round-off of all values. Within the step, these errors cancel.
 #[test]
 fn round_off_that_cancels_within_the_step_is_right() {
     let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| BoundedValue { value, bound: 4.0 * value.abs() });
-    // These are a hundred roundings of the quartic that is small in the whole step: t (t - 1/4) (t - 3/4) (t - 1).
+    // The quartic t (t - 1/4) (t - 3/4) (t - 1) is small in the whole step.
     let small = [1.0, -2.0, 1.1875, -0.1875, 0.0];
     let turned = |size: f64| -> Vec<f64> {
         right.iter().zip(small).map(|(right, small)| right.value + size * UNIT_ROUNDOFF * small).collect()

@@ -62,9 +62,9 @@ impl Follower<'_> {
         if self.prefers_own { by_own } else { Decision::Miss { time: ImpactTime::Excluded } }
     }
 
-    /// Reports a decision that changes because of lost coefficients. Its cause is the factor, not round-off. With some
-    /// factors the library keeps coefficients that it drops from the reference's polynomials; then nothing is lost, and
-    /// the reference's decision is not used.
+    /// Reports a decision or a time of impact that is different because of lost coefficients. Its cause is the
+    /// program's factor, not round-off. With some factors the library keeps coefficients that it drops from the
+    /// reference's polynomials; then nothing is lost, and the reference's decision is not used.
     fn report_losses(&mut self, pair: Pair, by_polynomials: Decision, own: ReferenceImpact) {
         if !own.has_losses {
             return;
@@ -106,14 +106,15 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the logged impulse for the pair's decision.
+    /// Returns the pair's first logged impulse that no decision has used yet, and marks it as used.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
         let index = self.contacts.indices_of(pair_key(pair)?).find(|index| !self.used_impulses[*index])?;
         self.used_impulses[index] = true;
         Some(self.records.end.impulses[index])
     }
 
-    /// Follows a logged decision.
+    /// Compares the logged decision about a pair with the decision `own`. Returns the logged one, unless no response
+    /// can be computed from it.
     fn follow(&mut self, pair: Pair, own: Decision) -> Decision {
         let call = self.decisions.len();
         let logged = self.logged_impulse(pair);
@@ -135,7 +136,7 @@ impl Follower<'_> {
             }
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
-                    // Round-off may change whether the pair collides, but not the place and the time of the collision.
+                    // Round-off may change whether the pair collides, but not the normal and the time of the collision.
                     let (expected, judged) = (self.expected_polynomials(), &mut self.judgement);
                     let finding = contact::compare_possible_hit(
                         self.context,
@@ -154,7 +155,7 @@ impl Follower<'_> {
         }
     }
 
-    /// Counts impulses without a decision.
+    /// Adds a finding for each logged impulse that no decision has used.
     pub(super) fn count_unused_impulses(&mut self) {
         for index in 0..self.used_impulses.len() {
             if self.used_impulses[index] {

@@ -33,7 +33,7 @@ use quick_matches::RoundOffFloors;
 /// The initial capacity of the list of decisions.
 const DECISIONS_CAPACITY: usize = 1 << 14;
 
-/// Follows one step. The simulation calls it as an observer; [`super::step`] reads the result.
+/// The observer of one step. The simulation calls it, and [`super::step`] reads the result.
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
@@ -59,8 +59,8 @@ pub(super) struct Follower<'a> {
     moved_particles: Vec<bool>,
     /// The particles that the responses to the pass's hits will move after the pass.
     particles_to_move: Vec<usize>,
-    /// Whether each part of the step, before the mid record and the geometric part, has an error that can explain its
-    /// result.
+    /// Whether each of the step's two parts has an error that can explain the part's result. The first part ends at the
+    /// mid record, the second is the geometric part.
     has_error: [bool; 2],
     /// The polynomials that were wrong at known positions in this step.
     wrong_formulas: PairKindMap<[bool; PairKind::MAX_POLYNOMIALS]>,
@@ -85,7 +85,7 @@ struct CurrentCall {
     own: Option<ReferenceImpact>,
     /// Whether right polynomials lead the root finder to a decision that differs from the reference's.
     is_disputed: bool,
-    /// Whether the polynomials are right and complete, and the logged ones exclude an impact.
+    /// Whether the logged polynomials are right and complete, and exclude an impact.
     is_excluded_by_log: bool,
     /// The motion of the pair's objects; `None` if it has not been computed.
     motion: Option<CallMotion>,
@@ -138,7 +138,7 @@ impl<'a> Follower<'a> {
         follower
     }
 
-    /// Decides disputed calls as the reference does.
+    /// Makes the observer decide disputed calls as the reference does.
     pub fn prefer_own(mut self) -> Self {
         self.prefers_own = true;
         self
@@ -154,14 +154,15 @@ impl<'a> Follower<'a> {
         Some(found)
     }
 
-    /// Returns the motion of the call's objects, and the expected polynomials.
+    /// Returns the motion of the call's objects, and the expected polynomials, or `None` if the motion has not been
+    /// computed.
     fn expected_polynomials(&self) -> Option<(BoundedPairMotion, ExpectedPolynomials)> {
         let CallMotion { motion, has_right_approach } = self.call.motion?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
     }
 
-    /// Ends the step. `state` is the reference's end state.
+    /// Ends the step: compares what is known only at its end. `state` is the reference's end state.
     pub fn finish(&mut self, state: &State) {
         self.judgement.decisions = self.decisions.len() as u64;
         self.compare_pass_counts();
@@ -171,8 +172,8 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Compares the states at the end of the step. Differences that wrong forces of pairs explain are not counted
-    /// again.
+    /// Compares the states at the end of the step. If omitted or doubled forces of pairs explain differences, these
+    /// pairs are reported instead.
     fn compare_end_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
         let tolerances = Tolerances::from_context(
@@ -261,7 +262,7 @@ impl StepController for Follower<'_> {
         if is_same {
             self.judgement.identical_polynomials[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
-                // If the decision is disputed, the effect of round-off must be known.
+                // If the logged decision differs, the motion shows whether round-off can explain it.
                 let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.motion = Some(CallMotion { motion, has_right_approach: false });
             }
@@ -297,7 +298,8 @@ impl StepController for Follower<'_> {
             self.call.is_disputed = (time <= 1.0) != (other <= 1.0);
             self.has_disputes |= self.call.is_disputed;
             if self.call.is_disputed && self.prefers_own || motion.is_same_moment(time, other) {
-                // The submission's own time differs from the reference's only by round-off.
+                // The reference's polynomials are kept if they are preferred, or if both times differ only by
+                // round-off.
                 return;
             }
         }

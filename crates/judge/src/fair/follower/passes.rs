@@ -39,7 +39,8 @@ impl<'a> Follower<'a> {
             return;
         };
         for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
-            // An earlier error may decide whether the geometric part runs, so its passes are not counted again.
+            // An error in the first part may decide whether the geometric part runs, so another finding would have the
+            // same cause.
             let follows = index == 1 && self.has_error[0];
             if logged[index] != self.passes[index] {
                 if !self.has_error[index] && !follows {

@@ -15,8 +15,8 @@ use fosssim_num::bounded::BoundedValue;
 type PolynomialComparisons = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
-    /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether they are
-    /// right, if the particles' positions are known.
+    /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether all are
+    /// right. A polynomial that depends on the program's factor counts as right if the particles' positions are known.
     pub(super) fn review(
         &mut self,
         pair: Pair,

@@ -89,7 +89,7 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
         let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         Plane { x: number, y: number }
     };
-    // Only differences of positions matter, and they are at most the spread. The bounds add the rest of the positions'
+    // Only differences of positions matter, and they are at most the spread. The bounds contain the positions' whole
     // absolute values.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
@@ -137,7 +137,7 @@ mod tests {
         <halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
     </scene>"#;
 
-    /// The minimum ratio of the lower limits to the round-off.
+    /// An observer that measures the smallest ratio of a lower limit to the round-off.
     struct Closest<'a>(&'a Scene, f64);
 
     impl Observer for Closest<'_> {

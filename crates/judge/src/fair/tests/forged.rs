@@ -62,7 +62,7 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
 }
 
 /// Checks that the trace is rejected if factors change a decision. Returns the number of scenes with changed decisions.
-/// Factors are powers of two, so nothing is rounded, and no decision is borderline because of them.
+/// Factors are powers of two, so they round nothing and make no decision borderline.
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;
     for (name, scene) in assets() {
@@ -142,7 +142,7 @@ fn an_impact_in_short_numbers_on_an_edge_at_rest_is_certain() {
     assert_eq!(fair(&scene, &write_frames(&scene, &simulate(&scene, ()))).verdict, FairVerdict::Accepted);
 }
 
-/// It is borderline whether the pair collides, but not with which normal and when.
+/// Round-off may change whether the pair collides, but not the normal and the time of the contact.
 #[test]
 fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
@@ -211,7 +211,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
     }
 }
 
-/// These are factors that the rules do not accept.
+/// Factors that are zero, subnormal, negative or not finite are rejected.
 #[test]
 fn factors_must_be_positive_numbers() {
     let scene = scene(BOUNCE_SCENE);
@@ -227,7 +227,7 @@ fn factors_must_be_positive_numbers() {
     }
 }
 
-/// A scene with a ball that moves away from a half-plane, and another ball far away.
+/// A scene with a ball that moves away from a half-plane.
 const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-euler" dt="0.5"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0.3" py="0.5" vx="0.1" vy="1" fixed="0" radius="0.25"/>
@@ -259,7 +259,7 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
 
 const NOWHERE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1e100, 1e-160, 0.0];
 
-/// The run loses all numbers in its first step. Afterwards it does nothing wrong, because no value can be right.
+/// All records after the first contain meaningless numbers. Later steps show no mistake, because no value can be right.
 #[test]
 fn steps_that_lead_nowhere_are_never_right() {
     for text in [BOUNCE_SCENE, ZONES_SCENE] {
@@ -284,7 +284,7 @@ fn steps_that_lead_nowhere_are_never_right() {
     }
 }
 
-/// A single record without numbers makes both the step before it and the step after it wrong.
+/// A single record with a meaningless number makes both the step before it and the step after it wrong.
 #[test]
 fn a_lost_record_spoils_two_steps() {
     let scene = scene(
@@ -472,7 +472,7 @@ fn formulas_are_reported_in_the_first_pass_of_a_hybrid_step() {
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
         simulate(&scene, &mut moved);
-        // These are the polynomials of pairs that have collided before, in the first pass of their step.
+        // In the first pass of each step, the polynomials of pairs whose bodies have already collided are changed.
         let trace = changed_reference_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];
@@ -491,7 +491,7 @@ fn formulas_are_reported_in_the_first_pass_of_a_hybrid_step() {
     assert!(told > 20, "{told}");
 }
 
-/// After a response, fixed particles are at their old places without round-off, so a zero polynomial must stay zero.
+/// After a response, fixed particles are at their old positions without round-off, so a zero polynomial must stay zero.
 #[test]
 fn fixed_particles_are_not_moved_by_a_response() {
     let scene = scene(
