@@ -17,8 +17,8 @@ pub struct CorrectedTrace {
 
 /// Replaces a trace's explanations by those of all traces together ([`explain_together`](super::explain_together)), if
 /// one of these applies to the trace. The counts and the example of the trace are kept. If none applies, the
-/// explanations that are `refuted` are removed. If no explanation covers a polynomial in every trace, the trace's guess
-/// about it is replaced, because other traces contradict it.
+/// explanations that are `refuted` are removed. If all traces together leave a polynomial unexplained, the trace's
+/// guess about it is removed, because other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
     let of_all = likely
@@ -37,8 +37,8 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     CorrectedTrace { agreed_count: explanations.len(), explanations }
 }
 
-/// Returns the explanations of a trace. If no explanation covers a polynomial in every trace, the trace's guesses about
-/// such polynomials are replaced by one explanation, which says so.
+/// Returns the explanations of a trace. The guesses about polynomials that all traces together leave unexplained are
+/// replaced by one explanation. It only says that these polynomials are wrong.
 fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Explanation> {
     let unexplained = likely.iter().find_map(|explanation| match &explanation.topic {
         ExplanationTopic::Polynomials { subjects, found: PolynomialEvidence::Nothing } => Some(subjects),
@@ -67,8 +67,9 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
     Some(explain_by_row(one, row, same_as.collect()))
 }
 
-/// Returns an explanation from all traces together, with the counts and the example of this trace. The list is empty if
-/// no explanation of this trace names the same mistake.
+/// Returns `likely`, an explanation of all traces together, with the counts and the example of this trace. For
+/// unfinished stages, returns the trace's own explanations. The list is empty if no explanation of this trace names the
+/// same mistake.
 fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // A trace may show several of the mistakes.
@@ -129,7 +130,7 @@ mod tests {
         assert_eq!((of_first.agreed_count, of_first.explanations.len()), (1, 1));
         let explanation = &of_first.explanations[0];
         assert_eq!((explanation.key.as_str(), explanation.reproduced, explanation.samples), ("loop-one-fewer", 2, 2));
-        // A trace that they do not explain keeps its own explanations.
+        // A trace that the joint explanations do not fit keeps its own explanations.
         assert_eq!(
             correct_trace(std::slice::from_ref(&other), &likely, &[]),
             CorrectedTrace { explanations: vec![other], agreed_count: 0 }

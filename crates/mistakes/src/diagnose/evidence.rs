@@ -2,8 +2,8 @@
 //!
 //! Each explanation of a trace is a symptom. Its alternatives are all statements ([`Explanation::statement`]) that
 //! would explain the trace as well. The statement that most traces allow is the likeliest. Statements allowed by
-//! exactly the same symptoms cannot be distinguished, unless other traces with wrong polynomials of the same kind do
-//! not allow one of them.
+//! exactly the same symptoms cannot be distinguished, unless another trace with wrong polynomials of the same kind
+//! rules out one of them.
 use super::{
     Detail, Explanation, Guess, PolynomialDetail, Weight,
     explain::is_formula_area,
@@ -75,25 +75,25 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
 /// The evidence for one statement.
 #[derive(Default)]
 struct Support<'a> {
-    /// The symptoms that allow the statement. Each is a trace and an index in the trace's list.
+    /// The symptoms that allow the statement. Each is the index of a trace, and an index into its symptoms.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
     complete_traces: usize,
     /// The number of traces whose first explanation is the statement.
     leading_traces: usize,
-    /// The number of traces in which the same quantity is wrong, in any way.
+    /// The number of traces in which the same quantity is wrong, in any way, if the statement is about a stage.
     related_traces: usize,
     /// The number of traces in which the same polynomials are wrong in another way.
     contradicting_traces: usize,
     /// The most detailed explanation with this statement.
     reported: Option<&'a Explanation>,
-    /// Whether the statement is a known formula. Known formulas are tried on every trace.
+    /// Whether the statement is a mistake of the catalogue or a known formula. These are tried on every trace.
     is_known: bool,
 }
 
 impl Support<'_> {
     /// Returns whether at least as many traces contradict a guess about polynomials as support it. A known formula is
-    /// tried on every trace, so an eighth is enough.
+    /// tried on every trace, so an eighth of the supporting traces is enough.
     fn is_denied(&self) -> bool {
         self.contradicting_traces > 0
             && self.contradicting_traces * if self.is_known { 8 } else { 1 } >= self.complete_traces
@@ -117,7 +117,7 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.leading_traces += usize::from(place == 0 && *word == statement);
-                // If several explanations have the same statement, the one with the longest exact form is used.
+                // If several explanations have the same statement, the most detailed one is used.
                 let rank_of =
                     |explanation: &Explanation| (explanation.is_exhaustive(), !explanation.details.is_empty());
                 let says_more = |reported: &Explanation| rank_of(reported) < rank_of(&symptom.explanation);
@@ -157,8 +157,8 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     all
 }
 
-/// Returns whether a trace's explanation contradicts the reported one: both are about the same polynomials, but the
-/// trace's does not allow the report.
+/// Returns whether an explanation of a trace that does not allow `reported` contradicts it: both are about the same
+/// polynomials.
 fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
     let is_of_formula = match &reported.topic {
         ExplanationTopic::Polynomials { found, .. } => matches!(found, PolynomialEvidence::Guess(_)),
@@ -200,11 +200,11 @@ pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
 }
 
 /// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
-/// that all of them allow.
+/// of the wrong formula that all of them allow.
 fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanation {
     let mut reported = reported.clone();
     let statement = reported.statement();
-    // Nothing in a contradicting trace is reproduced.
+    // In a contradicting trace nothing is reproduced, so only its samples are counted.
     let against = traces.iter().filter(|trace| !trace.allows_statement(&statement)).flat_map(|trace| &trace.symptoms);
     reported.samples += against
         .filter(|symptom| contradicts(&symptom.explanation, &reported))
@@ -235,8 +235,8 @@ fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanati
     reported
 }
 
-/// Removes what other traces contradict from a fault of contact vectors or states. Details of one trace are dropped
-/// then.
+/// Removes from a fault of contact vectors or states what other traces contradict. If the fault changes, its details
+/// are removed as well, because they are those of one trace.
 pub(super) fn generalize_fault(reported: &mut Explanation, traces: &[&[Explanation]]) {
     let Explanation { topic: ExplanationTopic::Stage(fault), details, .. } = reported else { return };
     let before = fault.clone();
@@ -268,7 +268,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// Returns the whole exact form once for each of its alternatives.
+/// Returns the exact form of a formula once with each of its alternative weights.
 fn alternative_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

@@ -20,7 +20,8 @@ const MAX_TRACES: usize = 6;
 /// The maximum number of polynomials in a step. A program that computes more counts as endless.
 const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
-/// Returns the keys of named mistakes in code that a student of this milestone does not write.
+/// Returns the keys of mistakes that the traces suggest, but that are in code that a student of this milestone does not
+/// write.
 fn supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
@@ -51,8 +52,8 @@ fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[E
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
-/// The number of explained traces for which one contradicting trace is needed. A mistake that explains more traces is
-/// only contradicted by several.
+/// The number of explained traces that one contradicting trace outweighs. A mistake that explains up to 8 traces is
+/// dropped after one contradiction, up to 16 after two, and so on.
 const NAMED_PER_CONTRADICTION: usize = 8;
 
 /// Returns whether traces contradict a mistake of a stage: the same stage is wrong in another way, although the mistake
@@ -92,8 +93,8 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 }
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
-/// program does not make. They are in code that a student of this milestone does not write, or other scenes contradict
-/// them. In right scenes the program is right, although it would be wrong with the mistake
+/// program does not make. Such a mistake is in code that a student of this milestone does not write, or other wrong
+/// traces contradict it, or the program is right on a scene on which the mistake would be visible
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.

@@ -28,8 +28,9 @@ const MAX_PAIRS: usize = 400_000;
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
 /// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
-/// content are accepted. Bytes after the first 64 MiB, and an incomplete record, are ignored. For a trace of
-/// another scene, the only explanation asks whether the trace belongs to this one ([`Explanation::is_other_scene`]).
+/// content are accepted. Bytes after the first 64 MiB, and an incomplete record, are ignored. For a trace that seems to
+/// be from another scene, the only explanation asks whether the trace belongs to this one
+/// ([`Explanation::is_other_scene`]).
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))
 }
@@ -72,7 +73,8 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         && find(&explanation.key).is_some_and(|row| is_formula_area(row.area))
         && explanation.is_complete()
     {
-        // If a guess about all polynomials means the same mistake, its terms and its example are added.
+        // If a guess explains all samples of its polynomials, it means the same mistake. Its terms and its example are
+        // added.
         let is_reported = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_reported) {
             // The hint for a remedy stays last, and a mistake that is already reported is not repeated.
@@ -84,7 +86,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         }
     }
     if known.iter().any(Explanation::is_complete) {
-        // The stage's mistake also reproduces the polynomials, so their other faults only follow from it.
+        // The known mistake reproduces whole steps, so other faults of polynomials only follow from it.
         polynomials.clear();
     }
     // A known mistake may explain all polynomials even if another mistake prevents it from explaining whole steps.

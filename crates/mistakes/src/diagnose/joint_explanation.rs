@@ -14,16 +14,16 @@ use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOGUE, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The maximum number of mistakes reported for a program, in addition to empty stages.
+/// The maximum number of mistakes reported for a program. All empty stages together count as one.
 const MAX_MISTAKES: usize = 3;
 
 /// With at least this many traces, a single trace is not enough evidence for an empty stage.
 const MANY_TRACES: usize = 8;
 
-/// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
-/// still empty, which count as one and come first. `refuted` are keys of mistakes that correct traces of the same
-/// program contradict. The explanation of the first value that is not finite does not count toward this limit. It comes
-/// last, because such values follow from the other mistakes.
+/// Returns the likely mistakes of a program that wrote several traces, at most three. Stages that are still empty count
+/// as one mistake together, and come first. `refuted` are keys of mistakes that correct traces of the same program
+/// contradict. The explanation of the first value that is not finite does not count toward this limit. It comes last,
+/// because such values follow from the other mistakes.
 ///
 /// A single scene often cannot distinguish mistakes. Several scenes together nearly always distinguish them.
 pub fn explain_together<'a>(
@@ -91,8 +91,8 @@ pub fn explain_together<'a>(
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Drops names of different mistakes in one quantity that no trace shows together. A program makes one mistake there,
-/// which resembles these; the stage is reported instead.
+/// Drops different mistakes in one quantity if no trace shows them together. The program makes one other mistake there,
+/// which resembles them, so the stage is reported instead.
 fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
     let term = |explanation: &Explanation| match find(&explanation.key)?.mistake {
         Mistake::Step(StepMistake::Edit(edit)) => Some(edit.term),
@@ -179,8 +179,9 @@ fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
     std::iter::once(all).chain(doubted).collect()
 }
 
-/// Returns the polynomials that are wrong in most traces, if no exact form holds in most and the first explanation does
-/// not cover them. The result names their place, and the most frequent explanation without an exact form.
+/// Returns an explanation that names the polynomials that are wrong in the most traces. It contains the most frequent
+/// guess about them, unless too many traces contradict this guess. Returns `None` if they are wrong in at most half of
+/// the traces, or if `found` covers them.
 fn explain_wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
@@ -272,7 +273,8 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
     found.iter().any(has_details)
 }
 
-/// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
+/// Drops explanations that name a stage, if a mistake that only states show explains one of the traces. The faults of
+/// stages may be consequences of this mistake.
 fn drop_consequences(traces: &mut Vec<OpenTrace>) {
     let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| {
@@ -285,8 +287,8 @@ fn drop_consequences(traces: &mut Vec<OpenTrace>) {
 }
 
 /// Keeps only the explanations of the earliest stage, because later faults may follow from it. Also drops known
-/// mistakes of that stage or a later one if they explain fewer traces than have a wrong stage: such mistakes only
-/// resemble the fault.
+/// mistakes of that stage or a later one if they explain fewer traces than have a fault in the stage: such mistakes
+/// only resemble the fault.
 fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let all = || traces.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
@@ -307,7 +309,7 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
     let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
-    // If pairs are in another order or left out, the polynomials of one pair are in the place of another pair's.
+    // If pairs are in another order or left out, the polynomials of one pair are compared with those of another.
     let is_misread = |explanation: &Explanation| find(&explanation.key).is_none() && explanation.stage().is_none();
     let has_order = all().any(Explanation::is_about_pairs);
     for trace in traces.iter_mut() {

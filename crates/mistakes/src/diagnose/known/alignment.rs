@@ -8,8 +8,8 @@ use crate::diagnose::{
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 use fosssim_student::{Mistake, Row, StepLog, Student, World, find};
 
-/// Returns the record that this program leaves out, if the beginning of the trace is right once the missing record is
-/// taken into account.
+/// Returns the explanation that this program leaves out a record, if the beginning of the trace is right once the
+/// missing record is taken into account.
 pub(super) fn find_missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::for_scene(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
@@ -33,7 +33,7 @@ fn count_records_without(layout: Layout, row: &Row) -> u64 {
 }
 
 /// Returns the number of right steps in the opening if the records are read without the missing one, or `None` if one
-/// of them is wrong.
+/// of them is wrong, or if there are none.
 fn count_aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

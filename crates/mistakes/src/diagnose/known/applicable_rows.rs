@@ -60,7 +60,7 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
     has_stage && row.pair_kind().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// Returns whether a mistake in forces or integrators is visible on the scene.
+/// Returns whether a mistake in forces, integrators, penalties or simple responses may be visible on the scene.
 fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = changed_term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);

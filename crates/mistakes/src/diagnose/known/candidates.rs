@@ -23,7 +23,7 @@ pub(super) struct Score {
 /// A row, and a program whose only mistake is that of the row.
 type Candidate = (&'static Row, Program);
 
-/// All programs, and the steps in the order of the trials.
+/// The programs with one mistake each, and the steps in the order in which the programs are tried on them.
 pub(super) struct Candidates<'a> {
     candidates: Vec<Candidate>,
     scan: &'a Scan,

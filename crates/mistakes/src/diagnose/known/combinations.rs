@@ -79,6 +79,7 @@ impl<'a> Search<'a> {
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
+    /// Returns `None` if it never does, if a row can be omitted, or if one of the rows is a correct variant.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
@@ -111,10 +112,10 @@ impl<'a> Search<'a> {
         Some(RowCombination { rows: set, equivalent_rows, rival_rows: Vec::new(), samples })
     }
 
-    /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
-    /// larger part of a step, but all mistakes together reproduce all of it. Sets of unwritten functions are tried
-    /// first, then one mistake with such functions, then two mistakes. Returns `None` if two disjoint sets reproduce
-    /// everything.
+    /// Finds several mistakes of a program whose steps log only states. In such a program one of several mistakes alone
+    /// reproduces nothing more of a step, but all of them together reproduce all of it. Sets of unwritten functions are
+    /// tried first, then one mistake with such functions, then two mistakes. Returns `None` if no set reproduces
+    /// everything, or if two sets do that differ in more than one row.
     fn find_combination(&self) -> Option<RowCombination> {
         let is_candidate = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_candidate).collect();
@@ -177,8 +178,9 @@ impl<'a> Search<'a> {
             && self.count_steps_if_confirmed(set).is_some()
     }
 
-    /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of detections
-    /// without which the number of polynomials fits whole passes, in case another mistake hides the first set.
+    /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of unwritten
+    /// detections with which the logged number of polynomials fits whole passes. They are needed if another mistake
+    /// hides the first set.
     fn starting_sets(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.find_empty_stages()];
         let counts: Vec<usize> =
@@ -196,8 +198,8 @@ impl<'a> Search<'a> {
         starts
     }
 
-    /// Returns the detections that the scene requires, as empty stages, and the number of polynomials in a pass of
-    /// each.
+    /// Returns the rows of unwritten detections on this scene, each with the number of polynomials that the detection
+    /// would log in a pass.
     fn row_sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.pair_kind().map_or(0, |kind| counts[kind] * kind.polynomial_count());
@@ -227,7 +229,8 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
+    /// Returns the rows of empty stages that may be visible on the scene. An unwritten detection logs nothing, or
+    /// zeros.
     fn empty_stage_rows(&self) -> Vec<&'static Row> {
         // For bodies at rest the approach polynomial is zero, too, but not the overlap polynomial before it.
         let logs_zeros = self.scan.wrong_steps.iter().any(|kept| {
@@ -261,7 +264,7 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        // A stage is left out if it reproduces as much but makes right steps wrong.
+        // Among rows that reproduce as much, those that make right steps wrong come last.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right_steps.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)

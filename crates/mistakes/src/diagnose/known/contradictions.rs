@@ -1,5 +1,5 @@
-//! Finds mistakes that a trace contradicts, regardless of other mistakes. For example, its stages are not empty, or its
-//! zones do not stop.
+//! Finds mistakes that a trace contradicts, regardless of other mistakes. For example, a stage that does something is
+//! not empty.
 use crate::diagnose::sampling::{
     CLEAR_TOLERANCE, KeptStep, LoggedNumbers, ROUND_OFF, Scan, StepDifference, find_state_difference,
 };
@@ -10,8 +10,8 @@ use fosssim_model::{
 use fosssim_num::vector::{length, vector_at};
 use fosssim_student::{CATALOGUE, Mistake, Row};
 
-/// Returns the keys of mistakes by which a program never does something that this trace does: move a zone, make a pass,
-/// or log a right polynomial of a kind.
+/// Returns the keys of mistakes with which a program never does something that this trace shows: move a zone, make a
+/// pass, or log a right polynomial of a kind.
 pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong_steps.iter().chain(&scan.right_steps);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| find_right_kinds(scene, sample)).collect();
@@ -32,7 +32,7 @@ pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> 
     CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
 }
 
-/// Returns the kinds of pairs whose first polynomials of the step are right.
+/// Returns the kinds of pairs with a right polynomial before the first wrong one of the step.
 fn find_right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     let logged = sample.records.end.polynomials.len();
     let right = match sample.difference {

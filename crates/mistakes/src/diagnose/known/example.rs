@@ -1,4 +1,4 @@
-//! Finds the first place at which a wrong step differs from the reference.
+//! Finds the first value of a wrong step that differs from the reference's.
 use super::resimulate::{ApproachForm, resimulate};
 use crate::diagnose::{
     Example, ExamplePlace, StepRecord,
@@ -56,7 +56,8 @@ pub(super) fn find_example(
     Example { step: kept_step.step, place, given: Vec::new(), expected, actual }
 }
 
-/// Returns the first different contact as three numbers: normal and time.
+/// Returns the first different contact, as the reference and the submission log it: the normal's components and the
+/// time. A contact that one of them does not log has no numbers.
 fn contact_example(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
@@ -80,7 +81,7 @@ fn contact_example(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (Example
     }
 }
 
-/// Returns the position and velocity of a particle as four numbers.
+/// Returns a particle in the states of the reference and the submission, each as four numbers: position and velocity.
 fn state_example(
     particle: usize,
     record: StepRecord,
