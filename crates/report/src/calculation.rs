@@ -23,12 +23,12 @@ use fosssim_num::{
 };
 use std::collections::BTreeSet;
 
-/// The maximum number of rows of a matrix that is printed.
+/// The maximum number of rows of a printed matrix. Larger matrices are left out.
 const MAX_ROWS: usize = 8;
 
-/// Renders a scene's first step, which has the number `step` in the original run: the forces and the integrator if
-/// there are forces, then the detection passes and the responses. If a pair is named, its detection is shown
-/// completely. Returns `None` if the step has no result.
+/// Renders a scene's first step as text: the forces and the integrator if there are forces, then the detection passes
+/// and the responses. `step` is the number of this step in the run from which the scene was taken. The detection of
+/// `pair` is shown completely. Returns `None` if the step has no result.
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::OnDemand).step(&mut walk).ok()?;
@@ -46,7 +46,8 @@ fn render_states(state: &State) -> String {
     render_table(["particle", "v", "x"], rows)
 }
 
-/// Renders the forces at the beginning of a scene, and the integrator's step.
+/// Renders the forces at the beginning of a scene, and the integrator's step. Returns `None` if all forces are zero and
+/// the scene has a collision handling other than penalty forces.
 fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let has_handling = !matches!(scene.collision, Collision::None | Collision::Penalty { .. });
     let collision = match scene.collision {
@@ -109,7 +110,8 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     Some(text + &render_table(["particle", "v", "x", a], rows))
 }
 
-/// Renders the first system that an implicit integrator solves, and its solution.
+/// Renders the first linear system that an implicit integrator solves, and its solution. A matrix with more than
+/// [`MAX_ROWS`] rows is left out.
 fn render_system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> String {
     let (size, mut text) = (gradient.len(), "  A d = b with A = M + h Hv + h^2 Hx and b = -h gradient\n".to_owned());
     if size <= MAX_ROWS {
@@ -130,7 +132,7 @@ fn render_system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> Strin
     text + &render_table(["particle", "b", "d"], rows)
 }
 
-/// The matrix of the first system that the integrator solves in a step, column by column.
+/// The matrix, column by column, of the first linear system that the integrator solves in a step.
 struct FirstSystem(Option<Vec<f64>>);
 
 impl StepController for FirstSystem {
@@ -139,7 +141,8 @@ impl StepController for FirstSystem {
     }
 }
 
-/// Renders the penalty force between each pair of bodies that are close enough; `None` if there is no such pair.
+/// Renders the penalty forces of all pairs that are close enough. Returns `None` if there is no such pair, or if the
+/// scene has no penalty forces.
 fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { return None };
     let mut rows = Vec::new();
@@ -161,7 +164,7 @@ fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     (!rows.is_empty()).then(|| format!("{}  {rule}\n", render_table(heading, rows)))
 }
 
-/// Returns the formula of what a force adds to the gradient of the potential.
+/// Returns the formula of a force's contribution to the gradient of the potential.
 const fn force_formula(force: &Force) -> &'static str {
     match force {
         Force::Spring { .. } => {

@@ -34,7 +34,7 @@ pub struct CallPlace<'a> {
     pub step: u32,
     /// The pair that is examined.
     pub pair: Pair,
-    /// The number of the detection pass in the step; `None` if the scene has no continuous-time detection.
+    /// The detection pass; `None` if the scene has no continuous-time detection.
     pub pass: Option<Pass>,
     /// The number of passes that the reference makes in this step.
     pub passes: usize,

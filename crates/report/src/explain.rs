@@ -14,14 +14,14 @@ use fosssim_mistakes::diagnose::{Example, ExamplePlace, ExampleValue, Explanatio
 /// The maximum number of mistakes in a list of those that can't be distinguished.
 const MAX_LISTED: usize = 3;
 
-/// Returns the lines of a report about explanations, the likeliest first. Lines that belong to a sentence are below it
-/// and indented by two blanks.
+/// Returns the lines of a report about explanations, the likeliest first. The lines that belong to a sentence are below
+/// it, and are indented by two spaces.
 pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|explanation| explanation_lines(explanation, style)).collect()
 }
 
 /// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
-/// formats with a single line.
+/// formats with a single line. Returns `None` if there are no explanations.
 pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
         return Some(describe(first));
@@ -49,9 +49,9 @@ pub(crate) struct ExplanationParts {
     pub(crate) sentence: String,
     /// The sentence about how many wrong steps or polynomials the mistake reproduces.
     pub(crate) evidence: Option<String>,
-    /// Lines with the exact form, and the mistakes that can't be distinguished from this one.
+    /// Lines with the exact form of the mistake, and with the mistakes that can't be distinguished from it.
     pub(crate) details: Vec<String>,
-    /// Lines with a small instance of the mistake.
+    /// Lines with an example of the mistake from the trace.
     pub(crate) example: Vec<String>,
 }
 
@@ -285,8 +285,8 @@ pub(crate) mod tests {
         );
     }
 
-    /// The reference makes the mistake and writes the same values, so weights that fit its polynomials add nothing to
-    /// the term of the mistake.
+    /// A run of the reference with this mistake writes the same values. Fitted weights would therefore add nothing to
+    /// the mistake's term.
     #[test]
     fn a_known_mistake_has_a_term_and_no_weights() {
         let weights = |explanation: Explanation| match explanation.details.as_slice() {

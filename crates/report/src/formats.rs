@@ -115,8 +115,7 @@ impl Format {
     }
 
     /// Returns the part of a grade that a document for `reader` contains. Reports for students leave out the groups
-    /// that students do not see immediately, unless the platform that requests them hides the groups itself
-    /// (`platform_hides`).
+    /// that students do not see immediately, unless the platform hides these groups itself (`platform_hides`).
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
             // These formats are always for students. The platforms and the page hide the hidden groups themselves.

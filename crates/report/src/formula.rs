@@ -45,12 +45,13 @@ fn format_symbol(word: &str, after: &str) -> String {
     }
 }
 
-/// Writes digits with other characters of Unicode, which begin with `zero`.
+/// Replaces decimal digits by other digits of Unicode, of which `zero` is the first.
 fn shift_digits(digits: &str, zero: char) -> String {
     digits.bytes().filter_map(|digit| char::from_u32(u32::from(zero) + u32::from(digit - b'0'))).collect()
 }
 
-/// Returns the power that follows a `^`, and the length of its text.
+/// Returns the superscript of the digits, or of the `T`, that follow a `^`, and the number of its characters. Returns
+/// `None` if none follow.
 fn parse_power(rest: &str) -> Option<(String, usize)> {
     let raise = |c| "⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ".chars().nth("0123456789T".find(c)?);
     let raised: String = rest.chars().map_while(raise).collect();

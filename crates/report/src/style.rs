@@ -1,7 +1,7 @@
 //! The style of text for terminals. The text can be understood without its colors and signs.
 use crate::formula;
 
-/// Whether a report has colors.
+/// The use of colors and mathematical signs in a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
     /// Plain text, for files, pipes and users who want no color.

@@ -27,7 +27,7 @@ pub(crate) fn remove_escape_codes(text: &str) -> Cow<'_, str> {
 }
 
 /// Returns the length in bytes of the code that follows an escape character, such as `[32;1m`, or `]0;title` and its
-/// end (ECMA-48, 5.4 and 5.6).
+/// end (ECMA-48, 5.4 and 5.6). Returns `None` if the code is incomplete or of another kind.
 fn escape_code_length(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {

@@ -59,7 +59,7 @@ pub(crate) fn describe_ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Explains the exit code of [`is_file_missing`].
+/// The explanation for programs that end as [`is_file_missing`] describes.
 pub(crate) const MISSING_FILE: &str =
     "exit code 127 usually means that a file was not found: the program runs alone, without the files next to it";
 

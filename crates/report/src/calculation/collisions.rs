@@ -168,8 +168,8 @@ impl Observer for CollisionWalk<'_> {
     }
 }
 
-/// Renders the formulas of a pair's polynomials, and the values of their letters. The longest formula is left out,
-/// because the course's library contains it.
+/// Renders the formulas of a pair's polynomials, and the values of their letters. The formula of the particle-edge
+/// approach is left out, because the course's library contains it.
 fn render_letters(motion: &PairMotion) -> String {
     let (inputs, mut lines) = (Inputs::new(motion), Vec::new());
     for subject in Subject::all_of_kind(motion.kind()) {

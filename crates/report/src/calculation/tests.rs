@@ -42,7 +42,7 @@ fn an_implicit_step_has_its_system() {
     assert_has(&newton, &["3 0 0 0", "0 (-1, 0) (-1/3, 0)", "0 (2/3, 0) (1/3, 0)"]);
 }
 
-/// Two bodies of masses 1 and 2 that meet: the impulse, by the law of impact.
+/// If bodies of masses 1 and 2 collide, the calculation contains the impulse by the law of impact.
 #[test]
 fn an_impact_has_its_impulse() {
     let bodies = r#"<particle m="1" px="0" py="0" vx="6" vy="0" fixed="0" radius="0.5"/>

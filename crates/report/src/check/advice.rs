@@ -5,8 +5,9 @@ use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
-/// Returns the advice. It is empty if the explanations name a known mistake or a polynomial, because they are
-/// sufficient then.
+/// Returns advice about where to look, if there is a first finding. If an explanation names a wrong stage of a step,
+/// the advice is where that stage probably is. If it names a known mistake or the fault of a polynomial, no advice is
+/// needed, and the list is empty. Otherwise, the advice depends on the kind of the finding.
 pub(crate) fn advice_lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first_finding::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|explanation| explanation::is_specific(explanation)) {
@@ -16,7 +17,8 @@ pub(crate) fn advice_lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// Returns the advice for milestones whose traces log only states, by their collision handling.
+/// Returns the advice for a finding in a scene without collision handling, or with simple or penalty handling. Returns
+/// `None` if there is no advice particular to such scenes.
 fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
     Some(match (finding.detail, collisions) {
         (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[

@@ -23,10 +23,10 @@ pub(super) fn is_in_later_pass(finding: &Finding) -> bool {
     is_formula_fault(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
-/// Counts the polynomials that are wrong by the original's rules only because positions are wrong. This requires that
-/// the fair rules, which start from the trace's own positions, reject the trace without finding a wrong formula. They
-/// must find wrong positions between the passes of a step; or they must find wrong states, and the first wrong formulas
-/// by the original's rules must all be in later passes. Otherwise the count is 0.
+/// Counts the polynomials that are wrong by the original's rules only because positions are wrong. The count is 0
+/// unless the fair rules, which start from the trace's own positions, reject the trace without finding a wrong formula.
+/// They must also find wrong positions between the passes of a step, or wrong states. If they find only wrong states,
+/// the first wrong formulas by the original's rules must all be in later passes.
 pub(crate) fn count_consequences(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);

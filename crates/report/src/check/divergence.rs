@@ -126,7 +126,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> ComparedValues {
         } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
-            // This is the same factor with which the finding was judged.
+            // The finding was judged with the same factor.
             let factor = if own == 0.0 { find_factor(reference, trace) } else { expected / own };
             let mut sides = compare_with_factor(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
@@ -167,8 +167,8 @@ fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual:
     compare_with_factor(place, expected, actual, find_factor(expected, actual), None)
 }
 
-/// Compares two polynomials power by power. `factor` scales the expected values. The coefficients of `power` are known
-/// to differ.
+/// Compares two polynomials power by power. `factor` scales the expected values. The coefficients of the power `wrong`
+/// are marked in any case.
 fn compare_with_factor(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
@@ -205,10 +205,10 @@ fn compare_with_factor(
     }
 }
 
-/// The names of the powers for a polynomial's coefficients. No polynomial has a higher power.
+/// The names of the powers of t, from 0 on. No polynomial has a higher power.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
-/// Compares the normals and the times of two logged collisions.
+/// Returns rows with the normals and the times of two logged collisions. A missing collision has no values.
 fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => number_row(name, expected, actual),

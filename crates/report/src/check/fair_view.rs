@@ -51,7 +51,7 @@ pub(super) struct CountedView {
 }
 
 impl CountedView {
-    /// Returns the first findings of each kind, and the numbers of findings.
+    /// Returns the first finding of each kind, with the number of findings of that kind.
     pub(super) fn count(book: Book, first_findings: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         first_findings
             .iter()

@@ -3,8 +3,8 @@
 /// The number of bytes at the start of a file that are read to recognize its kind.
 pub const SNIFFED_BYTES: u64 = 512;
 
-/// Returns the kind of a file that begins with `start`, if such a file can't be a trace. Traces begin with the bits of
-/// a position.
+/// Returns a phrase about the kind of a file that begins with `start`, such as `is empty`. Returns `None` if the file
+/// may be a trace, because traces begin with the bits of a position.
 pub fn detect_file_kind(start: &[u8]) -> Option<&'static str> {
     const FILE_SIGNATURES: [(&[u8], &str); 8] = [
         (b"\x7fELF", "looks like a program (ELF)"),

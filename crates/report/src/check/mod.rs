@@ -38,7 +38,7 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use steps::WrongStepView;
 
-/// A judged trace, and the names that people use for it.
+/// A judged trace, with everything that the report shows about it.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
     /// The name of the scene, as the user typed it.
@@ -93,7 +93,8 @@ impl Check<'_> {
         text::render(self, style)
     }
 
-    /// Renders the requested steps, with expected and actual values. Returns `None` if none of them is wrong.
+    /// Renders the requested steps, with expected and actual values. Returns `None` if no step was requested, or if all
+    /// wrong steps were requested and there are none.
     pub fn steps_text(&self, style: Style) -> Option<String> {
         steps::render(self, style)
     }

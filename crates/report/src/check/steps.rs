@@ -82,7 +82,7 @@ impl Progress for WrongSteps {
 }
 
 impl Steps {
-    /// Adds findings of a step, which the collection may contain already.
+    /// Adds findings of a step. The collection may contain the step already.
     fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &StepChoice) {
         if findings.first_findings.is_empty() {
             return;
@@ -156,7 +156,8 @@ fn find_requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(
     }
 }
 
-/// Renders the section about single steps. Returns `None` if no step was requested, or if none of them is wrong.
+/// Renders the section about single steps. Returns `None` if no step was requested, or if all wrong steps were
+/// requested and there are none.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = official_steps(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {

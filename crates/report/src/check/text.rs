@@ -62,10 +62,11 @@ fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Styl
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// Renders the program's likely mistakes, as many as fit on a screen.
+/// Renders the likeliest mistakes of the program, up to [`MAX_EXPLANATIONS`], and the number of the others. Returns
+/// `None` if there are none.
 fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(MAX_EXPLANATIONS));
-    // The example is left out here, because the first difference below is also an example.
+    // If the first difference is shown below, it is an example, so the explanations' own examples are left out.
     let has_example = find_first(check).is_none();
     let without = |explanation: &Explanation| Explanation { example: None, ..explanation.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };

@@ -1,9 +1,10 @@
-//! Tests of an outcome that commands make before they report it.
+//! Checks that commands make on an outcome before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::{ReadFailure, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
-/// Returns whether there is something to explain: whether the fair rules reject the trace.
+/// Returns whether there is something to explain: whether the fair rules reject the trace or, if they were not used,
+/// whether the original's rules do not accept it.
 pub fn needs_explanation(outcome: &Outcome) -> bool {
     match &outcome.fair {
         Some(fair) => fair.verdict == FairVerdict::Rejected,

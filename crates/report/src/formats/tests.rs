@@ -83,7 +83,7 @@ fn every_format_lists_skipped_entries_once() {
         assert_eq!(format.render_class(&all(), &[]), format.render(&all()));
     }
     assert_valid("grade.schema.json", &Format::Json.render_class(&all(), &skipped_entries));
-    // A class has one suite, and so the same groups.
+    // All submissions of a class are graded with the same suite, so they have the same groups.
     let csv = csv_of_submissions(&[samples::accepted_grade(), samples::accepted_grade()], &skipped_entries);
     let mut rows = csv::Reader::from_reader(csv.as_bytes());
     let names: Vec<String> = rows.records().map(|row| row.expect("rows of one length")[0].to_owned()).collect();
@@ -121,7 +121,8 @@ fn prairielearn_follows_its_schema() {
     insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::failing_grade()]));
 }
 
-/// If half of the score is next to the word "accepted", the reason must be given.
+/// If a submission gets only half of the score and the word "accepted" is shown next to it, the text must give the
+/// reason.
 #[test]
 fn prairielearn_says_that_groups_which_are_not_shown_count() {
     let mut grade = samples::accepted_grade();
@@ -184,8 +185,8 @@ fn an_unchanged_template_is_reported_in_ten_lines() {
     );
 }
 
-/// One scene confuses a loop that runs one round too few with an empty loop. No format shows explanations that all
-/// scenes together contradict.
+/// On one scene, a loop that runs one round too few can't be distinguished from an empty loop. No format shows an
+/// explanation that the other scenes contradict.
 #[test]
 fn every_format_uses_the_explanation_of_all_scenes() {
     let mut grade = samples::accepted_grade();
@@ -305,7 +306,8 @@ fn text_csv_and_github_read_well() {
     insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
 }
 
-/// A program that was run on a hidden scene can choose its failure on a visible one. Only the verdict may be shown.
+/// A program that has run on a hidden scene can leak it by the way in which it fails on a visible one. Students may
+/// therefore see only the verdict.
 #[test]
 fn with_hidden_groups_students_see_nothing_that_a_program_chose() {
     let failing = |choice: u32| {

@@ -32,7 +32,7 @@ pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     causes.into_iter().map(|(_, scenes)| scenes).collect()
 }
 
-/// Returns the scene that shows a mistake most clearly.
+/// Returns the scene that shows a mistake most clearly; `None` if no scene shows it.
 pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
     named.min_by_key(|scene| clarity_rank(scene))
@@ -46,9 +46,9 @@ pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
 }
 
 /// Returns how hard a cause is to see in a scene. The clearest scene has the smallest value. The criteria are, in this
-/// order: whether the rule books differ (then the fault may be round-off), the number of named mistakes, the number of
-/// mistakes with the same effect, the number of faults (which grows with the length of the motion), and the number of
-/// steps.
+/// order: whether the rule books differ (then the fault may be round-off), the number of explanations that agree with
+/// all scenes, the number of explanations of this scene alone, the number of findings (which grows with the length of
+/// the motion), and the number of steps.
 fn clarity_rank(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
     let found = scene.disclosure.as_ref().map_or(0, |all| all.official().counts.total());
     (scene.difference_cause.is_some(), scene.corrected_explanations.len(), scene.explanations.len(), found, scene.steps)

@@ -146,9 +146,9 @@ pub(crate) fn has_never_run(grade: &Grade) -> bool {
     grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
-/// Returns the scenes on which not all submissions are right, the hardest first, and the number of further such scenes.
-/// Submissions that were never run are not counted. Scenes that were not run, or on which the grader failed, are not
-/// counted either.
+/// Returns the scenes on which not all submissions are right, the hardest first, and the number of scenes on which all
+/// are right. Submissions that were never run are not counted. Scenes that were not run, or on which the grader failed,
+/// are not counted either.
 pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();

@@ -94,7 +94,7 @@ fn empty_rows(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) 
         column if column == reasons => escape_formula(&entry.reason),
         _ => String::new(),
     };
-    // A group may have the same name as another column.
+    // A group may have the same name as one of these columns. The columns of groups stay empty.
     let own = head.iter().position(|column| column == reasons).unwrap_or_default();
     let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
     skipped_entries.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()

@@ -54,7 +54,7 @@ pub(crate) fn render(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> Stri
     report.to_string().unwrap_or_default()
 }
 
-/// Returns a suite with a single case, for a submission that could not be run as a whole.
+/// Returns a suite with a single case, for a submission that could not be graded as usual.
 fn fault_suite(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());

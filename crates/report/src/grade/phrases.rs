@@ -28,7 +28,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(find_likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// Returns the heading above likely mistakes. If none of them is known, it only promises what differs.
+/// Returns the heading above likely mistakes. If none of them is a known mistake, the heading is `What differs`.
 pub(crate) fn likely_heading(likely: &[(Explanation, usize)]) -> &'static str {
     match likely {
         _ if likely.iter().all(|(mistake, _)| mistake.is_unexplained()) => "What differs",
@@ -45,7 +45,8 @@ pub(crate) fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
     state.unwrap_or_else(|| words::explanation::describe_with_alternatives(mistake))
 }
 
-/// Describes the wrong state that comes first in a scene in which nothing explains the polynomials.
+/// Describes the first wrong state of a scene, for polynomials that no mistake explains. Returns `None` if the first
+/// difference is not a wrong state.
 pub(crate) fn describe_wrong_state(scene: &SceneGrade) -> Option<String> {
     let first = find_wrong_state(scene)?;
     let is_official = scene.disclosure.as_ref()?.official().first_divergence.as_ref() == Some(first);
@@ -57,8 +58,8 @@ pub(crate) fn describe_wrong_state(scene: &SceneGrade) -> Option<String> {
     ))
 }
 
-/// Describes an explanation of a scene in one sentence: by the wrong state that comes first, if nothing else explains
-/// the polynomials.
+/// Describes an explanation of a scene in one sentence. If no mistake explains the polynomials, the sentence is about
+/// the first wrong state, if there is one.
 pub fn describe_in_scene(scene: &SceneGrade, mistake: &Explanation) -> String {
     let state = mistake.is_unexplained().then(|| describe_wrong_state(scene)).flatten();
     state.unwrap_or_else(|| words::explanation::describe(mistake))
@@ -82,7 +83,8 @@ pub fn scene_lines(scene: &SceneGrade, style: Style) -> Vec<String> {
     scene.corrected_explanations.iter().flat_map(lines).collect()
 }
 
-/// Returns lines about the exact form of a likely mistake, or about the state that is wrong first.
+/// Returns lines about the exact form of a likely mistake. If no mistake explains the polynomials, the line is about
+/// the first wrong state, if there is one.
 pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String> {
     let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake)).flatten();
     match scene.and_then(find_wrong_state) {
@@ -94,8 +96,8 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
     }
 }
 
-/// Returns the wrong position or velocity that comes first in a scene by the official rules, or else by the fair ones:
-/// the original's rules also reject polynomials for round-off.
+/// Returns the first difference by the official rules if it is a wrong position or velocity; otherwise the first one by
+/// the fair rules if it is. The original's rules may reject an earlier polynomial only because of round-off.
 fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
     let disclosure = scene.disclosure.as_ref()?;
     let firsts = [Some(disclosure.official()), disclosure.fair.as_ref()].into_iter().flatten();
@@ -115,7 +117,7 @@ pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
     grade.course_note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
-/// Returns how many scenes were to be explained, such as `12 wrong scenes`.
+/// Returns the number of scenes with wrong traces as text, such as `12 wrong scenes`.
 pub(crate) fn count_wrong(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     format_count(wrong.count() as u64, "wrong scene")

@@ -7,8 +7,8 @@ use crate::{
 };
 use fosssim_findings::{Grade, SkippedEntry};
 
-/// Adds a warning about each skipped entry to the grade if there is only one. A report on one submission has no list of
-/// skipped entries.
+/// Adds a warning about each skipped entry to the grade if there is only one grade. A report on one submission has no
+/// list of skipped entries.
 pub fn add_warnings(grades: &mut [Grade], skipped_entries: &[SkippedEntry]) {
     if let [grade] = grades {
         let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.reason);
@@ -16,7 +16,8 @@ pub fn add_warnings(grades: &mut [Grade], skipped_entries: &[SkippedEntry]) {
     }
 }
 
-/// Returns the list of skipped entries that follows a class's table in the text report.
+/// Returns the list of skipped entries that follows a class's table in the text report. A report on one submission has
+/// no such list, so the text is empty.
 pub fn list_not_graded(grades: &[Grade], skipped_entries: &[SkippedEntry], style: Style) -> String {
     if skipped_entries.is_empty() || grades.len() < 2 {
         return String::new();

@@ -133,7 +133,7 @@ fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Int
     PlottedPolynomial { name, coefficients, zeros: interval_ends(positive), positive }
 }
 
-/// Returns the zeros of a polynomial within the step. They are the ends of the intervals in which it is positive.
+/// Returns the ends of the intervals in which a polynomial is positive. The finite ends are zeros of the polynomial.
 fn interval_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|interval| [interval.lo, interval.hi]).collect()
 }

@@ -60,7 +60,7 @@ impl Case<'_> {
         render_template(&CaseContent { check, key, verdict_class, content })
     }
 
-    /// Returns the finding that is shown first: the official book's, or the other book's if the official book has none.
+    /// Returns the finding that is shown first; `None` if there is none, or if the hints hide it.
     fn first(&self) -> Option<&Finding> {
         find_first(&self.check).filter(|_| self.hints == Hints::Full)
     }
@@ -245,7 +245,8 @@ fn format_value(value: Value) -> String {
 }
 
 /// Renders explanations, each in its own box. If the first wrong values are shown next to them, an explanation's
-/// example is left out. If a wrong state is described, its text replaces all about polynomials that nothing explains.
+/// example is left out. `wrong_state` describes a wrong state. It replaces the text about polynomials that no mistake
+/// explains.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool, wrong_state: Option<&str>) -> String {
     let parts = explanations.iter().map(|explanation| match wrong_state.filter(|_| explanation.is_unexplained()) {
         Some(state) => ExplanationParts { sentence: state.to_owned(), ..ExplanationParts::default() },

@@ -113,7 +113,8 @@ impl ClassContent<'_> {
         mistakes.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns the mistakes that several submissions make, the most frequent first.
+    /// Returns the mistakes that several submissions make, the most frequent first. Groups of submissions that no
+    /// mistake explains, and that fail the same scenes for the same reasons, follow.
     fn clusters(&self) -> Vec<Cluster<'_>> {
         let grades = self.class.grades;
         // Submissions that nothing explains may be wrong for different reasons.
@@ -159,7 +160,8 @@ impl ClassContent<'_> {
         group_same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
-    /// Returns the URL of the first submission's page on which the scene is described, because it is wrong.
+    /// Returns the URL of the scene on the page of the first submission that fails it; `None` if no submission fails
+    /// it.
     fn find_scene_with_mistake(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.scene_url(grade, name))

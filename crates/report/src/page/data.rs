@@ -23,7 +23,7 @@ pub(super) fn render_blocks(case: &Case<'_>, evidence: &Evidence, key: &str, pre
     // With restricted hints, the page contains only data that the program itself wrote.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    // If both motions are the same bit for bit, only one of them is stored.
+    // If the run with the mistake equals the trace bit for bit, its motion is not stored.
     let what = case.mistake_run.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();

@@ -8,8 +8,9 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{self as student};
 
 impl MistakeRun {
-    /// Simulates the reference with the named mistake, to compare it with the trace. Returns `None` if the mistake
-    /// reproduces no step, if the trace was not kept completely, or if the evidence does not contain the whole motion.
+    /// Runs the reference with the mistake of an explanation built in, and compares the result with the trace. Returns
+    /// `None` if the explanation is about no known mistake or reproduces no step, if the trace was not kept completely,
+    /// or if the evidence does not contain the whole motion.
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // An incomplete motion cannot be compared.
         let trace = trace?;

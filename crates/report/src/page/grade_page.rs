@@ -124,7 +124,8 @@ impl GradeContent<'_> {
         if self.has_scenes { find_likely_mistakes(self.grade) } else { Vec::new() }
     }
 
-    /// Returns the scene that shows the first cause, and the number of scenes with it, if no mistake or place is named.
+    /// Returns the scene that shows the first cause best, and the number of scenes with this cause. Returns `None` if
+    /// nothing is wrong, or if the page already says where the program fails.
     fn common_cause(&self) -> Option<(&SceneGrade, usize)> {
         let (first, _) = self.listed.first().filter(|_| self.has_scenes && self.grade.located_failure.is_none())?;
         (!self.is_accepted).then_some((*first, self.cause_sizes[0]))

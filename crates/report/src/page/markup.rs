@@ -55,7 +55,7 @@ pub(super) fn render_note(note: Option<&CourseNote>) -> String {
     format!(" <span class=\"hint\">The course: {}.</span> ", note.format_line(escape, link))
 }
 
-/// Renders a line whose formulas are written in HTML, with mathematical signs and with letters that have subscripts.
+/// Escapes a line for HTML, and writes the indices of letters in its formulas as subscripts.
 pub(super) fn render_formula(line: &str) -> String {
     let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
     ["cm", "a", "b", "i"].into_iter().fold(escape(line), set)

@@ -43,7 +43,7 @@ pub const ELEMENTS: &str = include_str!("viewer/elements.js");
 const VIEWER: &str = include!("viewer/viewer.in");
 const STYLE: &str = include_str!("style.css");
 
-/// The reference's run if it makes a named mistake.
+/// A run of the reference with one mistake of the catalogue built in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MistakeRun {
     /// The mistake's key in the catalogue.
@@ -65,7 +65,7 @@ pub struct Case<'a> {
     pub scene: &'a Scene,
     /// The data for the motion viewer. With `None`, the page has no viewer and no plots.
     pub evidence: Option<&'a Evidence>,
-    /// The reference's run if it makes the mistake of the first explanation, as a proof.
+    /// A run of the reference with the mistake of the first explanation built in, as a proof.
     pub mistake_run: Option<&'a MistakeRun>,
     /// The amount of detail on the page. The file does not contain what the hints hide.
     pub hints: Hints,

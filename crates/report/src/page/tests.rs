@@ -94,8 +94,8 @@ fn a_page_says_where_and_why_a_trace_ends_and_agrees_with_the_text() {
     }
 }
 
-/// A mistake in a response or in the failsafe is reported where its step ends first. The later polynomials have right
-/// formulas, in both reports.
+/// Both reports show a mistake in a response or in the failsafe first as a wrong state at the end of its step. The
+/// formulas of the later polynomials are right.
 #[test]
 fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
     for (name, id) in [

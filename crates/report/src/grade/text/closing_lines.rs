@@ -1,5 +1,5 @@
-//! The closing lines of a report on one submission, which give the result. It is short enough for a small terminal and
-//! comes last, so that it stays visible.
+//! The closing lines of a report on one submission, which give the result. They are few enough for a small terminal and
+//! come last, so that they stay visible.
 use super::{Text, verdict_style};
 use crate::untrusted_text::{strip_control_characters, to_one_line};
 use crate::{

@@ -72,8 +72,8 @@ impl Text<'_> {
         text
     }
 
-    /// Writes one submission. Its verdict is above its scenes. If no other submission follows, the verdict is also
-    /// below them, where a terminal still shows it.
+    /// Writes one submission. Its verdict is above its scenes. If it is the only submission, the verdict is repeated
+    /// below the scenes, where a terminal still shows it.
     fn write_submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
@@ -101,8 +101,8 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(TextStyle::Strong, &name), self.style.paint(look, verdict))
     }
 
-    /// Describes the fault of the whole submission. If the reader runs the command, the text also names the option that
-    /// helps.
+    /// Describes the fault of the whole submission; `None` if there is none. If the reader runs the command, the text
+    /// also names the option that helps.
     fn describe_submission_fault(&self, grade: &Grade) -> Option<String> {
         let option = match (grade.submission_fault(), self.advice) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
@@ -153,7 +153,7 @@ pub fn describe_extra_points(grade: &Grade) -> String {
     })
 }
 
-/// Names the rule book that gives the verdict, if that matters; empty if both books agree.
+/// Names the rule book that gives the verdict. The text is empty if the fair rules were used and both books agree.
 fn describe_rules(grade: &Grade) -> String {
     match (grade.rules, grade.count_differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),

@@ -60,8 +60,8 @@ fn split_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|letter: char| !letter.is_alphanumeric())
 }
 
-/// Returns the first name in a line such as `x21` or `d32` whose letter satisfies `has`. The result is the letter and
-/// the two numbers.
+/// Returns the first name in a line such as `x21` or `d32`, of whose two digits one satisfies `has`. The result is the
+/// letter and the two digits.
 fn find_difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
     split_words(line).find_map(|word| {
         let mut letters = word.chars();

@@ -37,8 +37,8 @@ pub fn describe(explanation: &Explanation) -> String {
     sentence
 }
 
-/// Describes the mistake in a list of a program's mistakes, together with other mistakes that the traces can't
-/// distinguish from it.
+/// Describes the mistake, together with other mistakes that the traces can't distinguish from it. The text is for lists
+/// of a program's mistakes.
 pub fn describe_with_alternatives(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.topic == ExplanationTopic::Mistake);
     let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
@@ -131,7 +131,7 @@ fn describe_unfinished(keys: &[String]) -> String {
     detections.chain(stages).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the sentence about a mistake in a step without collisions. The subject of the sentence depends on the
+/// Returns advice about where to look for a mistake in a step without collisions. The advice depends on words in the
 /// mistake's key.
 fn describe_step_area(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));

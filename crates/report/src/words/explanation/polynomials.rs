@@ -48,7 +48,7 @@ const fn power_name(power: usize) -> &'static str {
     }
 }
 
-/// Renders a line of the exact form.
+/// Renders a line about the exact form of the mistake.
 pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
     match detail {
         PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials are logged per detection"),

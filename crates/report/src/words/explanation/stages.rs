@@ -153,7 +153,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Renders a line of the exact form; `None` if the numbers tell the reader nothing more.
+/// Renders a line about the exact form of the fault; `None` if the numbers tell the reader nothing more.
 pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => {

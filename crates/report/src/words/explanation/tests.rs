@@ -170,7 +170,7 @@ fn all() -> Vec<Explanation> {
     all
 }
 
-/// Returns one line of every kind of exact form.
+/// Returns one detail of each kind.
 fn lines_of_all_sorts() -> Vec<Detail> {
     let subject = Subject::EdgeOverlap;
     let weight = |letters: &[&'static str], power| Weight {

@@ -58,7 +58,8 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     format!("Near pairs: {}.", sentences.join(". Besides, "))
 }
 
-/// Returns lines about the first affected pair, the number of pairs, and the exact form of their common properties.
+/// Returns lines about the first affected pair, the number of pairs, and the exact conditions of their common
+/// properties.
 pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairText(pair)));
     let of_fault = |fault: &PairFault<'_>| {
