@@ -51,7 +51,8 @@ pub struct Cards<'a> {
     pub for_students: bool,
 }
 
-/// The names of a trace's two cards: the one for staff, and the one for students, if they may see less.
+/// The names of a trace's two cards: the one for staff, and the one for students. Both are the same card if students
+/// may see as much as staff. A card that was not drawn is `None`.
 pub type CardNames = (Option<String>, Option<String>);
 
 impl Cards<'_> {
@@ -76,7 +77,7 @@ impl Cards<'_> {
         (self.draw)(judged).map(|card| store_card_file(self.folder, &card)).transpose()
     }
 
-    /// Returns whether a card is missing that an earlier result names. `students` is the level of detail for students.
+    /// Returns whether a card that an earlier result needs is missing. `students` is the level of detail for students.
     pub(super) fn lacks_card(&self, result: &SceneResult, students: Hints) -> bool {
         let is_missing = |name: &String| !card_location(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;

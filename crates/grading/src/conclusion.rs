@@ -158,7 +158,7 @@ pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Ex
     result
 }
 
-/// Returns the size of a complete trace of the scene whose lists are all empty; `None` if the reference's lists are
+/// Returns the size of a complete trace of the scene in which all lists are empty; `None` if the reference's lists are
 /// empty as well.
 fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);

@@ -288,7 +288,7 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the result of a run that was judged, with its explanations. If the search for explanations panics, returns
+/// Returns the result of a run that was judged, with its explanations. If this work panics, returns the activity and
 /// the panic.
 fn explain_run(run: &JudgedRun<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, CaughtPanic)> {
     let mut explaining = catch_panic(|| failed_scene::inject_panic(Activity::Explaining, program)).err();

@@ -35,7 +35,7 @@ pub struct TriedScene<'a> {
     pub features: &'a Features,
 }
 
-/// The largest probability of chance, over all values that were tried, at which a result is still reported.
+/// The probability of chance, corrected for the number of values that were tried, from which a result is not reported.
 const MAX_CHANCE_PROBABILITY: f64 = 0.01;
 
 impl FeatureIndex {
@@ -57,8 +57,8 @@ impl FeatureIndex {
         SceneFeature { family: family.name.into(), value: self.value.map(value) }
     }
 
-    /// Returns the rank of a feature, by which features are sorted. Features of zones come first, then those of
-    /// contacts, then those of whole steps. Values that mean the absence of something come last.
+    /// Returns the rank of a feature, by which features are sorted. Whole kinds of events come before single values.
+    /// Among both, zones come first, then contacts, then whole steps. Pairs that do not collide come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -70,7 +70,7 @@ impl FeatureIndex {
     }
 }
 
-/// Returns the features that all failing scenes have in common; `None` if the evidence for them is weak.
+/// Returns the features that all failing scenes have in common; `None` if no scene fails, or if the evidence is weak.
 pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let failed: Vec<&TriedScene<'_>> = all_scenes.iter().filter(|tried| tried.failure.is_some()).collect();
     let first = failed.first()?;
@@ -97,7 +97,7 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         return None;
     }
     features.sort_by_key(|feature| feature.rank());
-    // A value that all events of a kind have is left out, because the kind alone says the same.
+    // If a whole kind of event is reported, single values of that kind are left out.
     let kinds: Vec<usize> =
         features.iter().filter(|feature| feature.value.is_none()).map(|feature| feature.family).collect();
     features.retain(|feature| feature.value.is_none() || !kinds.contains(&feature.family));

@@ -18,7 +18,7 @@ pub fn to_printable(name: &OsStr) -> String {
 /// Returns a file's name as [`to_printable`] does, but with escapes instead of combining marks. Different names then
 /// always have different texts.
 pub fn to_exact(name: &OsStr) -> String {
-    // If normalization changes a letter, its length or its code point changes.
+    // Marks, parts of syllables, and characters that NFC would replace are escaped, so no two names become equal.
     map_chunks(name, |valid| escape(valid, |c| is_mark(c) || continues_syllable(c) || !c.nfc().eq([c])))
 }
 

@@ -66,8 +66,8 @@ impl Plan {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
-    /// Returns the milestone whose programs the suite grades. If the file does not name it, it is the first milestone
-    /// that can run most of the scenes.
+    /// Returns the milestone whose programs the suite grades. If the file does not name it, this is the milestone whose
+    /// programs can run the most scenes, or the first of several such milestones.
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
             self.scenes().filter(|task| task.scene.unknown_features(*assignment).next().is_none()).count()
@@ -85,7 +85,8 @@ impl Plan {
     }
 }
 
-/// Returns the text of a built-in suite. `t2m2@1` means a version, and `t2m2` means the newest one.
+/// Returns the text of a built-in suite; `None` if there is no such suite. For example, `t2m2@1` is version 1, and
+/// `t2m2` is the newest version.
 pub fn find_built_in_suite(name: &str) -> Option<&'static str> {
     assignments::find_version(name).map(|(_, version)| version.suite)
 }

@@ -24,8 +24,8 @@ pub(super) const SHARED_FILE: &str =
 /// The message if the program's file belongs to another submission.
 pub(super) const FILE_OF_ANOTHER: &str = "the program is a hard link to another submission's file";
 
-/// Returns whether an open file belongs to another submission, according to what was found when submissions were
-/// searched.
+/// Returns whether an open file belongs to another submission. `known` is what was found out about the file when
+/// submissions were searched for. Fails if a file with several names is not the one that was found then.
 pub(super) fn belongs_to_another(file: &File, known: Option<&ProgramFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match known {

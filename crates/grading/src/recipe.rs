@@ -159,7 +159,7 @@ fn open_only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, Stri
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // If the file has several names, its owner is unknown.
+        // A file with several names is left out, because its owner is unknown.
         let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
         matches!(read_file_kind(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };

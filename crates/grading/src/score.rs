@@ -116,7 +116,8 @@ fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Optio
     }
 }
 
-/// Returns the share of a scene's points that its result gives; `None` if the result gives no points.
+/// Returns the share of a scene's points that its result gives. Returns `None` if the grader failed or did not run the
+/// scene, so that there are no points.
 fn point_share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
@@ -131,8 +132,8 @@ fn point_share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Opti
     })
 }
 
-/// Finds points or a verdict in a grade that do not follow from its scenes. A grade from a file that is not trusted is
-/// checked before its points are used.
+/// Returns a sentence about points or a verdict in a grade that do not follow from its scenes; `None` if everything is
+/// consistent. A grade from a file that is not trusted is checked before its points are used.
 pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
     if !grade.groups.iter().all(|group| POINTS_RANGE.contains(&group.max_points)) || grade.max_points != max_points {
@@ -165,7 +166,7 @@ fn is_consistent(group: &GroupGrade) -> bool {
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
-/// Returns the likely mistakes that accepted scenes refute. The smallest accepted scenes are tried first.
+/// Returns the keys of the likely mistakes that accepted scenes refute. The smallest accepted scenes are tried first.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()

@@ -18,7 +18,7 @@ const MAX_SCENES: usize = 4;
 /// The maximum number of bodies in a scene that is made smaller. Traces of larger scenes are too long to be kept as a
 /// whole.
 pub const MAX_BODIES: usize = 400;
-/// The maximum number of causes without a name for which a smallest scene is searched for.
+/// The maximum number of scenes without a known cause for which a smallest scene is searched for.
 const MAX_UNNAMED_CAUSES: usize = 2;
 
 /// The limits on the search if smallest scenes are only one part of a report.

@@ -112,7 +112,8 @@ pub fn digest_file(path: &Path) -> Option<blake3::Hash> {
     if length <= MAX_FOLDER_BYTES { digest_open_file(file) } else { None }
 }
 
-/// Returns the digest of the file that `Recipe::stage_file_in` would copy, without copying it.
+/// Returns the digest of the file that `Recipe::stage_file_in` would copy, without copying it. Returns `None` if the
+/// file can't be read, or if it belongs to another submission.
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&ProgramFile>) -> Option<blake3::Hash> {
     let file = open_in_folder(folder, name).ok()?;
     if belongs_to_another(&file, noted).ok()? { None } else { digest_open_file(file) }

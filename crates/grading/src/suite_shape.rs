@@ -189,7 +189,8 @@ fn remove_unknown(
     *table = entries.collect();
 }
 
-/// Returns whether a value is of the given type.
+/// Returns whether a value has the given type. If it has not, a problem is reported. Wrong parts of a table are
+/// removed.
 fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();

@@ -11,8 +11,8 @@ pub use timing::{GeneratedScene, TIMING_SCENES};
 /// The beginning of the suite template, before its groups. It contains the settings, with comments.
 const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
 
-/// Returns a suite file with comments, as a starting point. It has the settings of the template, and the groups of a
-/// built-in suite.
+/// Returns a suite file with comments, as a starting point. It has the settings of the template, and the groups of the
+/// built-in suite `name`. Returns `None` if there is no such suite.
 pub fn suite_template(name: &str) -> Option<String> {
     let (assignment, SuiteVersion { suite, .. }) = find_version(name)?;
     let groups = suite.split_once("rules = \"fair\"\n")?.1.trim_start();
@@ -68,8 +68,8 @@ pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
     }
 }
 
-/// Returns the assignment and the version that a suite name means, such as `t2m2@1`. `t2m2` means the newest version.
-/// Upper and lower case are the same.
+/// Returns the assignment and the version to which a suite name refers. For example, `t2m2@1` is version 1, and `t2m2`
+/// is the newest version. Upper and lower case are the same. Returns `None` for an unknown name.
 pub fn find_version(name: &str) -> Option<(Assignment, SuiteVersion)> {
     if matches!(name, "earlier" | "earlier@1") {
         return Some((Assignment::T2M1, EARLIER_VERSION));

@@ -1,7 +1,7 @@
 //! Distributes the scenes of submissions among jobs, and reports progress.
 //!
 //! Reports and progress displays receive events. Events arrive on the caller's thread, one at a time. A result is
-//! stored before its event is sent. The module [`grader`](super::grader) makes the steps of a grading.
+//! stored before its event is sent. The module [`grader`](super::grader) contains the single steps of a grading.
 use super::{
     cancellation::Cancellation,
     grade::Grade,
@@ -73,8 +73,8 @@ pub enum GradeFault {
     Reporting(CaughtPanic),
 }
 
-/// Grades all submissions, and returns the grades in the same order. After a cancellation, grades mark the scenes that
-/// were not run. Without `results`, nothing is reused or stored.
+/// Grades all submissions, and returns the grades in the same order. If the grading is cancelled, the scenes that were
+/// not run are marked in the grades. Without `results`, nothing is reused or stored.
 pub fn grade_all(
     grader: &Grader<'_>,
     submissions: &[Submission],

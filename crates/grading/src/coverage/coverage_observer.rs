@@ -88,7 +88,7 @@ impl<'a> CoverageObserver<'a> {
         }
     }
 
-    /// Records the contacts of a pass, at whose end it is known which of them have bodies in common.
+    /// Records the contacts of a pass. Only at the end of the pass is it known which of them have bodies in common.
     fn record_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {

@@ -13,7 +13,7 @@ use fosssim_num::{
     vector::{Vec2, divide, vector_at},
 };
 
-/// The share of an edge's length at each end. A position in it counts as near the end.
+/// The share of an edge's length, at each end, within which a position counts as near the end.
 const NEAR_END: f64 = 0.05;
 
 /// Returns the stage in which a pair is checked, as a value of a property.

@@ -76,8 +76,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Returns the events that occur in a scene; `None` if the scene's collision handling is not the one that the
-    /// assignment asks for.
+    /// Returns the events that occur in a scene. The result is empty if the scene does not belong to assignment T2M2.
     ///
     /// # Errors
     ///

@@ -1,4 +1,4 @@
-//! Explanations of all scenes together.
+//! Tests the explanations of all scenes together.
 use crate::{
     Grade, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
