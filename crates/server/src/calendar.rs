@@ -26,7 +26,7 @@ pub fn is_plausible(milliseconds: i64) -> bool {
 }
 
 /// Parses a time in ISO 8601, such as `2026-12-01T23:59:00+01:00`; seconds may be missing, and `Z` is allowed. The time
-/// zone is required.
+/// zone is required. Returns milliseconds since 1970; `None` if the text is no such time.
 pub fn parse(text: &str) -> Option<i64> {
     let text = text.trim().replace(' ', "T");
     let text = match text.strip_suffix(['Z', 'z']) {

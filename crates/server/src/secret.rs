@@ -2,7 +2,9 @@
 
 /// Returns 128 random bits in hexadecimal.
 ///
-/// # Panics Panics if the system provides no random numbers.
+/// # Panics
+///
+/// Panics if the system provides no random numbers.
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");

@@ -60,7 +60,7 @@ impl Stage {
         Ok(())
     }
 
-    /// Sends a request as administrator, which must succeed.
+    /// Sends a request as administrator. Fails if the request does not succeed.
     pub(super) async fn done(&mut self, method: Method, path: &str, body: &str) -> Result<Bytes> {
         let answer = self.admin.request(method, path, Bytes::copy_from_slice(body.as_bytes())).await?;
         if !answer.status.is_success() {

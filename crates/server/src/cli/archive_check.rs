@@ -5,7 +5,8 @@ use anyhow::Result;
 use fosssim_intake::ArchiveLimits;
 use std::fs::File;
 
-/// Prints the kind of the file, or the reason for rejecting it, as JSON.
+/// Prints the kind of the file, or the reason for rejecting it, as JSON. With `--into`, the archive is also unpacked,
+/// and its kind is not printed.
 pub(super) fn run(arguments: &ArchiveCheckArguments) -> Result<()> {
     let answer = match &arguments.into {
         Some(folder) => fosssim_intake::unpack(File::open(&arguments.file)?, folder, ArchiveLimits::DEFAULT)

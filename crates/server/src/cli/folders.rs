@@ -46,7 +46,7 @@ impl ServiceFolders {
         }
     }
 
-    /// Creates the data folder, or checks that only the server can access it.
+    /// Creates the data folder, or checks that it can be written. Logs a warning if other users can access it.
     pub(super) fn open(storage: &StorageArguments) -> Result<Self> {
         let data = std::path::absolute(&storage.data)?;
         let data = data.as_path();

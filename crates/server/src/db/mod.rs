@@ -72,7 +72,8 @@ pub struct Database {
     faults: LastFailure,
     /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
-    /// The permits of requests without priority limit how many of these requests use connections, or wait for them.
+    /// The permits that requests without priority need. They limit how many such requests use connections or wait for
+    /// them.
     permits: Arc<Semaphore>,
     has_priority: bool,
 }
@@ -211,8 +212,7 @@ impl Database {
         }
     }
 
-    /// Returns whether the database answers, and its tables are not from a newer program. If they are from a newer
-    /// program, nothing is written from then on.
+    /// Returns whether the database answers. If its tables are from a newer program, nothing is written from then on.
     pub async fn is_healthy(&self) -> bool {
         let version = read_version(self).await;
         if version.as_ref().is_ok_and(|version| *version > NEWEST) {

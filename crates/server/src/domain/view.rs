@@ -436,7 +436,7 @@ pub(super) async fn submissions_after(
     transaction.all(statement, values![assignment, after, PAGE_SIZE]).await
 }
 
-/// Returns the submissions with the given numbers.
+/// Returns the submissions with the given IDs.
 pub(super) async fn submissions_named(transaction: &mut Transaction, ids: &[i64]) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})");
     transaction.all(statement, values![serde_json::to_string(ids).unwrap_or_default()]).await

@@ -84,7 +84,7 @@ impl QueuePolicy {
         self.lease / 8
     }
 
-    /// Returns the minimum gap between two searches for expired leases after which the database counts as having been
+    /// Returns the gap between two searches for expired leases from which the database counts as having been
     /// unavailable. During such a gap, workers could not renew their leases.
     fn outage_gap(&self) -> Duration {
         self.lease / 2

@@ -14,7 +14,7 @@ const BATCH_SIZE: usize = 500;
 
 impl Store {
     /// Removes every artifact that is older than `min_age` and to which nothing refers. Returns the number of removed
-    /// artifacts. `referenced` returns those of the given digests that are referenced.
+    /// artifacts. `named` returns those of the given digests to which something refers.
     ///
     /// An artifact that is being stored at the same time is not lost. It is first moved to the trash, where it can
     /// still be read. There it is checked again, immediately and in every later run. If the database refers to it by

@@ -50,7 +50,8 @@ pub(super) async fn examine(
     let accepted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut flags = vec!["--wanted", &accepted];
     flags.extend(declared_form.iter().flat_map(|form| ["--form", form]));
-    // The grader's own suites do not build sources, so sources are not accepted for them.
+    // The grader's own suites build no sources. With such a suite, the archive must therefore contain the program
+    // itself.
     if settings.suite_archive.is_none() && settings.accepts_form(Form::Sources) {
         flags.extend(["--program", &settings.program]);
     }

@@ -172,7 +172,7 @@ impl<S: Send + Sync> FromRequestParts<S> for UrlPathParts {
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let found = Path::<Self>::from_request_parts(parts, state).await;
-        // The text in the URL is not a number.
+        // If the text in the URL is not a number, the page does not exist.
         let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
         let is_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
         let what = if is_submission { "submission" } else { "page" };

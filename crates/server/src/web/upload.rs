@@ -27,9 +27,9 @@ use tokio::io::AsyncWriteExt;
 /// The maximum sum of all pauses in an upload, in multiples of the longest single pause.
 const MAX_PAUSES: u32 = 20;
 
-/// Returns the time within which an upload of `size` bytes must arrive. Then the time at which it began counts as its
-/// arrival. The limit is half a minute, and one more second for each 32 KiB. Without this limit, a student could begin
-/// an upload before the due date and write its content afterwards.
+/// Returns the time within which an upload of `size` bytes must arrive, so that the time at which it began counts as
+/// its arrival. The limit is half a minute, and one more second for each 32 KiB. Without this limit, a student could
+/// begin an upload before the due date and write its content afterwards.
 pub(super) fn allowed_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }

@@ -55,7 +55,8 @@ impl Child {
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The parent ended before the kernel was instructed to kill this process, so it must end by itself.
+                // If the parent ended before the kernel was instructed to kill this process, this process must end by
+                // itself.
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
@@ -142,7 +143,7 @@ fn wait_without_reaping(number: libc::pid_t) {
     loop {
         match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
             (0, libc::CLD_STOPPED) => {
-                // Only a child that has ended remains to be reaped. After other events, wait again.
+                // This consumes the event that the child was stopped, so that the next wait does not return it again.
                 wait(libc::WSTOPPED | libc::WNOHANG);
                 // SAFETY: the child is not reaped yet, so the ID still belongs to it.
                 unsafe { libc::kill(number, libc::SIGCONT) };

@@ -37,7 +37,8 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
             -1 => Err(io::Error::last_os_error()),
             0 => {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The guard ended before the kernel was instructed to kill this process.
+                // If the guard ended before the kernel was instructed to kill this process, this process must end by
+                // itself.
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }

@@ -29,7 +29,7 @@ const MAX_FETCHES: u32 = 5;
 /// The minimum time between two reports of a grading's progress.
 const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The time between two looks for the first progress, so that it is reported early.
+/// The time between two checks for the first progress, so that it is reported early.
 const FIRST_REPORT_INTERVAL: Duration = Duration::from_millis(100);
 
 /// A number of scenes that is larger than that of any suite. Larger numbers in a progress file are ignored.

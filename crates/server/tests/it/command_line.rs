@@ -1,4 +1,4 @@
-//! Commands that cannot succeed give the reason, and create no files.
+//! Tests that commands that cannot succeed give the reason, and create no files.
 use std::{
     fs,
     net::TcpListener,

@@ -150,7 +150,7 @@ async fn every_job_is_claimed_once_by_many_workers(fresh: Fresh) {
 async fn a_late_worker_changes_nothing(fresh: Fresh) {
     let database = &fresh.database;
     let job = enqueue(database, JobOwner::Student(1)).await;
-    // Both workers have one name, as after a restart.
+    // Both workers have the same name, as after a restart.
     let frozen = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
     assert_eq!(tick(database).await.retried, 1);

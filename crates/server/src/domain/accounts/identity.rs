@@ -132,7 +132,8 @@ pub(in crate::domain) async fn find_token_owner(
     }
 }
 
-/// Returns the account of a session and the session's state. A session that a token began ends with the token.
+/// Returns the account of a session and the session's state; `None` if the session is unknown or has ended. A session
+/// that was started with a token ends with the token.
 pub(in crate::domain) async fn find_session_account(
     transaction: &mut Transaction,
     session: &str,
@@ -230,7 +231,8 @@ pub(in crate::domain) async fn link_owner(
     row.map(|row| Ok((row.text("name")?, row.maybe_text("courses")?))).transpose()
 }
 
-/// Marks a link as used. Returns the link's owner, and the method by which the owner now signs in.
+/// Marks a link as used. Returns the link's owner, and the method by which the owner now signs in; `None` if the link
+/// can't be used.
 pub(in crate::domain) async fn use_link(
     transaction: &mut Transaction,
     link: &str,

@@ -93,7 +93,8 @@ impl App {
         let fresh = self.0.database.read().await?.row(statement, values).await?;
         ensure(fresh.is_some(), reject(UNKNOWN_SIGN_IN))?;
         let browser = browser.ok_or_else(|| reject("your browser did not send the cookie of this sign-in"))?;
-        // The sign-in began in another browser, whose owner may try to sign this browser in as somebody else.
+        // If the sign-in began in another browser, the owner of that browser may try to sign this one in as somebody
+        // else.
         ensure(shown == identity::digest(browser), reject("this sign-in began in another browser"))?;
         Ok(pending)
     }
@@ -125,7 +126,7 @@ impl PendingSignIn {
     }
 }
 
-/// Reads a signed state. Returns the sign-in, and the digest of the browser's secret.
+/// Reads a signed state. Returns the sign-in, and the digest of the browser's secret; `None` if the signature is wrong.
 fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
     let (words, tag) = state.rsplit_once('.')?;
     hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;

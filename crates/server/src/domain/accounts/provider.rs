@@ -142,7 +142,7 @@ async fn resolve(transaction: &mut Transaction, provider: &Provider, person: &Pr
     if newcomer.find(transaction).await?.is_none()
         && let Some(mailbox) = &person.mailbox
     {
-        // Staff created the account for the owner of this address, and the account was never used.
+        // The address can claim an account only if staff created the account for it, and if the account was never used.
         let statement = "SELECT id FROM account
             WHERE login = ? AND managed_by IS NOT NULL AND disabled_at IS NULL {for update}";
         if let Some(row) = transaction.row(statement, values![mailbox]).await? {

@@ -38,8 +38,8 @@ const SELECT_BY_COURSE: &str =
     "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
 const SELECT_BY_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
 
-/// Removes the jobs of the submissions that a statement selects, and returns the submissions' numbers as JSON. Waits
-/// for jobs that are about to finish.
+/// Removes the jobs of the submissions that a statement selects, and returns the submissions' IDs as JSON. Waits for
+/// jobs that are about to finish.
 async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
     let rows = transaction.rows(which, values![value]).await?;
     let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
@@ -65,8 +65,8 @@ async fn remove_submissions(transaction: &mut Transaction, which: &'static str, 
     Ok(())
 }
 
-/// Removes submissions in batches, until the statement selects no more. Submissions that arrive in the meantime are
-/// left for the caller to remove.
+/// Removes submissions in batches, until the statement selects no more. Submissions that arrive later are left for the
+/// caller to remove.
 async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
     loop {
         let mut transaction = database.begin().await?;

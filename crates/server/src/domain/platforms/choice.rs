@@ -118,7 +118,8 @@ impl Person {
         let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
         let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
         let platform_course = transaction.one(statement, values).await?.int("id")?;
-        // The platform's message began this session, and ended all other sessions if the account was a student's.
+        // The session was started by a launch from the platform. If the account was a student's, its other sessions
+        // have ended.
         let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
             ON CONFLICT (platform_course, account) DO NOTHING";
         transaction.execute(statement, values![platform_course, self.account.id]).await?;

@@ -185,7 +185,7 @@ impl Member {
         Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
-    /// Opens the report called `name` of the submission with the ID `id`.
+    /// Returns the report called `name` of the submission with the ID `id`.
     ///
     /// # Errors
     ///

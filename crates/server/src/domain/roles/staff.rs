@@ -44,9 +44,9 @@ pub struct NewSuite {
 pub struct UploadedSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// The suite's name; `None` if an older version of the server received it.
+    /// The suite's name; empty if an older version of the server received it.
     pub name: String,
-    /// The time of the last upload, in milliseconds since 1970.
+    /// The time of the last upload, in milliseconds since 1970; `None` if an older version of the server received it.
     pub uploaded_at: Option<i64>,
 }
 

@@ -33,7 +33,8 @@ pub(in crate::domain) fn statement_pieces(assignment: &Assignment) -> Result<[St
     ])
 }
 
-/// Enqueues the submissions with the given numbers because a person requested it, and cancels their earlier jobs.
+/// Enqueues the submissions of an assignment that have IDs in a range and whose earlier jobs are all marked as
+/// replaced. `by` is the person who requested this. Returns the number of these submissions.
 pub(in crate::domain) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,

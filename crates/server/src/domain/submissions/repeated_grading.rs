@@ -42,7 +42,7 @@ impl Staff {
         Ok(EnqueuedJobs { jobs })
     }
 
-    /// Grades the submissions on which the grader failed again, of one assignment or of the whole course. Returns their
+    /// Grades again all submissions on which the grader failed, of one assignment or of the whole course. Returns their
     /// number.
     pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<EnqueuedJobs, Problem> {
         let assignments = match assignment {

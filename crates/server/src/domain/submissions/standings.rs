@@ -72,7 +72,7 @@ pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer
 /// The last answer, and the time at which its computation began.
 type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
 
-/// The number of answers in memory above which answers that no request is waiting for are removed.
+/// The number of answers in memory above which those are removed for which no request waits.
 const MAX_ANSWERS: usize = 32;
 
 /// The number of submissions that one statement reads completely.
@@ -150,7 +150,7 @@ struct BestAttempt {
 }
 
 impl BestAttempt {
-    /// Returns the best attempt in a list of `ID TIME POINTS`, separated by commas, with the oldest first.
+    /// Returns the best attempt in a list of entries `ID TIME POINTS`, which are separated by commas and in any order.
     fn from_list(
         list: &str,
         by_hand: &HashMap<i64, String>,

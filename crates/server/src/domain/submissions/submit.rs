@@ -88,8 +88,8 @@ impl Member {
         Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// Returns the time at which an upload's request arrived, by the database's clock. Before the body is sent, this
-    /// checks the upload's key and announced size.
+    /// Returns the time at which an upload's request arrived, by the database's clock. If the request announces the
+    /// upload's key and size, this also checks whether the upload is allowed, before the body is sent.
     ///
     /// # Errors
     ///

@@ -35,7 +35,7 @@ pub(super) struct AssignmentRow {
 }
 
 impl AssignmentRow {
-    /// Returns whether submissions wait although no worker is connected. For students it always returns false.
+    /// Returns whether no worker is connected that could grade submissions. For students it always returns false.
     pub(super) fn lacks_worker(&self) -> bool {
         self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
     }

@@ -35,7 +35,7 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
-    /// The details that are stored with the results that count, by the numbers of the results.
+    /// The details that are stored with the results that count, by the IDs of the results.
     stored_results: BTreeMap<i64, StoredResult>,
     /// The wrong scenes of the students on the page. Each has the logins of the students for whom it is wrong.
     scenes: Vec<(String, Vec<String>)>,

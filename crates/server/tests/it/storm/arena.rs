@@ -323,7 +323,7 @@ pub(super) fn signal(worker: &Child, signal: i32) {
     unsafe { libc::kill(worker.id().cast_signed(), signal) };
 }
 
-/// Forever continues this test's workers after they were stopped for twice their lease.
+/// Runs forever. Continues each worker of this test that has been stopped for twice its lease.
 fn wake_the_frozen() {
     let own = std::process::id().to_string();
     let mut frozen: BTreeMap<i32, Instant> = BTreeMap::new();

@@ -6,10 +6,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Submissions are a line: what to do, the verdict's code, the points, and how long to take.
+/// A submission is one line: the instruction, the verdict's code, the points, and the duration.
 ///
 /// `poison` kills the worker that runs it, every time. `crash` kills the grader. `freeze` stops its worker the first
-/// time, and anybody who watches over the storm wakes it much later.
+/// time, and the test continues that worker much later.
 const SCRIPT: &str = r#"#!/bin/sh
 [ "$1" = grade ] || exit 2
 program=$2

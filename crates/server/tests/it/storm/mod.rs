@@ -1,7 +1,8 @@
-//! Storms: real workers, killed, frozen and cut off at random moments while submissions come in, on both engines. Each
-//! accepted submission is graded once, with the same result as without disturbances.
+//! Runs storms on both engines: real workers are killed, frozen and disconnected at random moments while submissions
+//! arrive. Each accepted submission is graded once, with the same result as without disturbances.
 //!
-//! Small by default; `scripts/crash-test` runs them at full size and prints the table of docs/server/crash-test.md.
+//! Storms are small by default. `scripts/crash-test` runs them at full size and prints the table of
+//! docs/server/crash-test.md.
 
 mod arena;
 mod deeds;

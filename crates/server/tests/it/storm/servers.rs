@@ -1,7 +1,7 @@
-//! Two servers with their workers on one database and one store, and workers over HTTP of which one lies about its
-//! health and one has no room: killed and frozen while students hand in, some of it poison. The store's disk is full
-//! for a while, and the pooler is killed, where there is one. Meanwhile staff regrades, publishes and removes, and
-//! archive bombs come in.
+//! Tests two servers with their workers on one database and one store, and workers over HTTP. One of these reports that
+//! it is healthy although it is not, and one has no space. Servers and workers are killed and frozen while students
+//! submit, and the grader fails on some submissions. The store's disk is full for a while, and the pooler is killed if
+//! there is one. Meanwhile staff regrade, publish and remove, and archive bombs arrive.
 use crate::support::{
     disk::SmallDisk,
     engines::{Fresh, on_all_engines},
@@ -23,7 +23,7 @@ on_all_engines!(two_servers_lose_nothing);
 
 const PATH: &str = "/api/v1/courses/physics/assignments/m1/submissions";
 
-/// A worker over HTTP, killed at the end.
+/// A worker over HTTP. It is killed when this value is dropped.
 struct Worker(Child);
 
 impl Worker {

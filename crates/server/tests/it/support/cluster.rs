@@ -1,7 +1,8 @@
-//! PostgreSQL for tests: from the system's packages, in a temporary folder, reached by a socket in it.
+//! Starts PostgreSQL for tests. It is from the system's packages, runs in a temporary folder, and is reached by a
+//! socket in that folder.
 //!
-//! [`Cluster`] is a server of one's own, for tests that kill it. [`Shared`] is one for all test processes: the first
-//! starts it, and a small shell that watches over it ends it when nobody has used it for a while.
+//! [`Cluster`] is a separate server, for tests that kill it. All test processes share the server [`Shared`]. The first
+//! process starts it, and a shell script stops it when no test has used it for a while.
 use fosssim_server::db::Address;
 use fosssim_testing::{Need, skip};
 use std::{
@@ -203,8 +204,8 @@ impl Shared {
             programs.init(&folder.join("data"));
             programs.server(&folder, false).process_group(0).spawn().expect("postgres");
             programs.wait_until_ready(&folder);
-            // Ends the server when nobody uses it any more: tests hold the lock `users` together. The next test waits
-            // until the server has ended.
+            // The script stops the server when no test uses it: tests hold a shared lock on `users`. The next test
+            // waits until the server has ended.
             let script = "cd \"$0\" && pid=$(head -n1 data/postmaster.pid) &&
                 while sleep 15 && [ \"$(head -n1 data/postmaster.pid)\" = \"$pid\" ]; do
                     if flock door -c \"flock --nonblock users true &&

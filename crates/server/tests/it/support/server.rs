@@ -12,8 +12,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// Grades as the submission requests: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, for two scenes. Beside `grade.json` it
-/// writes a report with what a hostile program would like to have there.
+/// A grader that gives the grade that the submission requests: `#!grade CODE POINTS [SCENE RIGHT-STEPS]`, for two
+/// scenes. Next to `grade.json` it writes a report with the content that a hostile program would put there.
 const GRADER: &str = r#"#!/bin/sh
 if [ "$1" = demo ]; then
     printf '#!grade WA 40\n' > "$3"

@@ -1,5 +1,5 @@
-//! People, workers and the server itself at the same time, at the same submissions: nobody is rejected because another
-//! was in the way, and no two wait for each other.
+//! Tests that people, workers and the server can work on the same submissions at the same time: no request is rejected
+//! because of another, and no two wait for each other.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, JSON, Server, program},

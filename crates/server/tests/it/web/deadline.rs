@@ -1,4 +1,5 @@
-//! The time at which an upload's head arrives counts for its due date, regardless of the duration of the rest.
+//! Tests that the time at which an upload's head arrives counts for its due date, regardless of the duration of the
+//! rest.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Answer, Client, JSON, Server, program},

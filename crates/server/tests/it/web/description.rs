@@ -1,4 +1,5 @@
-//! The description of the API is consistent: it satisfies a validator, and states the rights for each operation.
+//! Tests that the description of the API is consistent: it satisfies a validator, and states the rights for each
+//! operation.
 use super::roles::{For, ROUTES};
 use fosssim_server::web;
 use serde_json::{Map, Value};

@@ -9,8 +9,8 @@ use std::{
     process::{Command, Stdio},
 };
 
-/// Series by name and labels, of a text that keeps to the format: every family has its help and type before its
-/// samples and stands once, as the format wants it, and names end as conventions want it.
+/// Returns the series of a text, by name and labels. Checks that the text follows the format: every family occurs once,
+/// has its help and type before its samples, and has a name that ends as the conventions require.
 fn read(text: &str) -> BTreeMap<String, f64> {
     let mut families = BTreeMap::new();
     let mut helped = BTreeSet::new();

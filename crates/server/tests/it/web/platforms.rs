@@ -29,7 +29,7 @@ pub(super) async fn start(fresh: &Fresh, more: &[&str]) -> (Server, Client, Plat
     (server, admin, platform)
 }
 
-/// The teacher connects the platform's course with a new one, creates an assignment, and chooses it for the link.
+/// Connects the platform's course with a new one as its teacher, creates an assignment, and chooses it for the link.
 pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
     let (teacher, place) = arrive(server, platform, ("teacher", INSTRUCTOR), |_| {});
     let page = teacher.get(&place).expect(200).text();

@@ -1,4 +1,4 @@
-//! A removal deletes all data of the removed thing, and does not disturb running work.
+//! Tests that a removal deletes all data of the removed thing, and does not disturb running work.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, Server, program},
