@@ -63,7 +63,7 @@ impl Default for Limits {
     }
 }
 
-/// The identity of a file, by which it can be recognized whether the file was changed.
+/// The identity of a file. If the file is replaced or changed, its identity differs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProgramIdentity([i64; 5]);
 

@@ -33,8 +33,8 @@ pub(super) struct RunKind {
 }
 
 impl RunKind {
-    /// Returns whether a keeper may serve the order. It may not if processes are not counted, or if the run has no
-    /// namespaces that end with it.
+    /// Returns whether a keeper may serve the order. The run must have its working folder in memory, namespaces that
+    /// end with it, and a system call filter. It must not be allowed to start other programs.
     pub(super) fn is_possible_for(order: &RunOrder) -> bool {
         order.is_in_memory && !order.allows_tools && order.layers.namespaces && order.layers.seccomp
     }
@@ -150,13 +150,13 @@ impl RunSupervisor {
         }
     }
 
-    /// Kills the keeper, whatever it is doing.
+    /// Kills the supervisor or the keeper, whatever it is doing.
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),
             Self::Shared(keeper, _) => keeper.child.as_mut(),
         };
-        // This fails if the keeper has ended, which does not matter.
+        // This fails if the process has ended, which does not matter.
         let _ = child.map(Child::kill);
     }
 

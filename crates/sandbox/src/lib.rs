@@ -83,8 +83,8 @@ pub fn processor_time(scope: ProcessorTimeScope) -> std::time::Duration {
     }
 }
 
-/// Lets writes of this process beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
-/// instead of killing the process. The programs that it runs keep the signal, which kills them.
+/// Makes writes of this process beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk.
+/// Otherwise such a write would kill the process. The programs that it runs keep the signal, which kills them.
 pub fn let_large_writes_fail() {
     sys::ignore_file_size_signal();
 }

@@ -23,8 +23,8 @@ const SAMPLE_PREFIX: &str = "fosssim-sample";
 const PROGRAM_PREFIXES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// The folders in which the programs are usually installed.
 const PROGRAM_FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
-/// The bytes before the place for the id of a mistake in the grader and in its sample, of every build. They are stored
-/// backwards, so that they are in the right order only in the place itself. An empty place makes no mistake.
+/// The mark before the place for a mistake's id, in every build of the grader and of its sample. It is stored backwards
+/// here, so that only the place itself has it in the right order. A program with an empty place makes no mistake.
 pub const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The number of bytes that are searched for the mark at a time.
 const MARK_WINDOW: u64 = 1 << 20;
@@ -92,8 +92,8 @@ fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     files
 }
 
-/// Returns whether a file is the grader or its sample, of this build or any other, without a pinned mistake. The sample
-/// may be graded at its own path (`itself`), to demonstrate grading; a copy of it is not a submission.
+/// Returns whether a file is the grader or its sample, of this build or any other, with an empty place for a mistake.
+/// The sample may be graded at its own path (`itself`), to demonstrate grading; a copy of it is not a submission.
 ///
 /// # Errors
 ///
@@ -106,7 +106,7 @@ pub fn is_own_file(program: &Path, itself: (u64, u64)) -> io::Result<bool> {
     Ok(has_mark(File::open(program)?)? && !list_files(&[Path::new(CURRENT_PROGRAM)]).iter().any(is_shown))
 }
 
-/// Returns whether bytes contain the mark of a place without a mistake.
+/// Returns whether bytes contain the mark with an empty place after it.
 fn has_mark(mut bytes: impl Read) -> io::Result<bool> {
     // The program that searches must not contain what it searches for.
     let mut mark = std::hint::black_box(MARK_BACKWARDS).to_vec();

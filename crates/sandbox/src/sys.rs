@@ -112,7 +112,7 @@ pub(super) fn die_with_parent() -> io::Result<()> {
     Ok(rustix::process::set_parent_process_death_signal(Some(Signal::KILL))?)
 }
 
-/// Prevents for good that executing a program gives privileges.
+/// Prevents permanently that an executed program gains privileges.
 pub(super) fn forbid_new_privileges() -> io::Result<()> {
     Ok(rustix::thread::set_no_new_privs(true)?)
 }
@@ -123,7 +123,7 @@ pub(super) fn set_limit(resource: Resource, value: u64) -> io::Result<()> {
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
 
-/// Becomes another user and group for good, and leaves all supplementary groups.
+/// Becomes another user and group permanently, and leaves all supplementary groups.
 pub(super) fn switch_user(id: u32) -> io::Result<()> {
     let (user, group) = (Uid::from_raw(id), Gid::from_raw(id));
     rustix::thread::set_thread_groups(&[])?;
@@ -345,7 +345,7 @@ pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::process::fchdir(fd)?)
 }
 
-/// Returns whether the current user may access the path in the way that `mode` says.
+/// Returns whether the current user has the access `mode` to the path.
 pub(super) fn is_accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }

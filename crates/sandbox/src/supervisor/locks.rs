@@ -10,7 +10,7 @@ use std::path::Path;
 use super::filter::LOCK_COMMANDS;
 use crate::sys::PendingCall;
 
-/// Returns whether the call locks a file. Other commands for descriptors are not announced.
+/// Returns whether the call can lock a file. Of the commands of `fcntl`, only those that lock files are announced.
 pub(super) fn is_lock_call(call: i64) -> bool {
     call == libc::SYS_flock || call == libc::SYS_fcntl
 }

@@ -15,7 +15,8 @@ use rustix::io::Errno;
 
 use crate::wire::{self, RawBytes, RunOrder};
 
-/// The number of bytes beyond the limit, by which the supervisor notices that a program exceeds it.
+/// The number of bytes that the folder may have beyond its limit, so that the supervisor notices that a program exceeds
+/// it.
 const SPARE_BYTES: u64 = 1 << 20;
 const SPARE_FILES: u64 = 64;
 /// The number of bytes that are copied at a time.

@@ -529,7 +529,8 @@ fn take_ownership(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     Ok((owner.uid(), owner.gid()))
 }
 
-/// Returns the descriptor number from which alone the program can be executed, if only the filter restricts executions.
+/// Opens the program under the only descriptor number from which the filter allows its execution. Returns `None` if the
+/// supervisor decides about executions, or if they are not restricted.
 fn open_entry_file(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.layers.seccomp || order.layers.notify || order.allows_tools {
         return Ok(None);
