@@ -1,4 +1,4 @@
-//! Finds the likely mistake from findings.
+//! Finds the likely mistakes of a program from its wrong traces.
 //!
 //! This module uses neither processes nor reports. It takes the steps of a trace that the fair rules find wrong, finds
 //! the mistake that reproduces them, and returns [`Explanation`]s, the likeliest first. These are values, from which

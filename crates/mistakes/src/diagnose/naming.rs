@@ -4,7 +4,7 @@ use fosssim_findings::explanation::{Detail, Explanation};
 use fosssim_student::{Row, all_rows, find};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Returns the explanation of the same steps by a known mistake instead.
+/// Returns an explanation of the same steps as `one` by the known mistake of `row`.
 pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
     let of_row = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
@@ -50,8 +50,8 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     if one.is_complete() {
         all.extend(all_rows().filter(|row| has_same_meaning(one, row)).map(|row| (row.id.to_owned(), true)));
     }
-    // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake or a
-    // general guess.
+    // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake, or a
+    // guess that does not depend on the polynomial.
     let words_by_subject = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {
             let is_of_all = find(guess).is_some() || claim.ends_with('/');

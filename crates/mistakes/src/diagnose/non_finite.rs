@@ -16,13 +16,13 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
-/// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. It is empty
-/// if all values are finite, or if the reference has the same values.
+/// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. The list is
+/// empty if all values are finite, or if the reference's values are not finite either.
 pub fn explain_non_finite_value(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
-/// Explains the records of a source.
+/// Explains the first value that is not finite, like [`explain_non_finite_value`], with records from any source.
 pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), NonFiniteSearch::default());
@@ -33,11 +33,12 @@ pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanati
     first.explain().into_iter().collect()
 }
 
-/// Finds the first value that is not finite, step by step.
+/// A search for the first value that is not finite, step by step.
 #[derive(Default)]
 pub(super) struct NonFiniteSearch {
     is_found: bool,
-    /// The explanation of the first such value, or `None` if the reference has the same value.
+    /// The explanation of the first such value, or `None` if it is not found yet or the reference's value is not finite
+    /// either.
     explanation: Option<NonFiniteValue>,
 }
 
@@ -103,7 +104,7 @@ fn has_non_finite_value(frame: &LenientFrame) -> bool {
 }
 
 /// Returns the stage of a step that computes a value that is not finite from a finite state, or `None` if the reference
-/// does so as well.
+/// does so as well or has no result.
 fn find_in_step(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -171,7 +172,7 @@ fn find_stage_in_single_pass(
     {
         return Some((NanStage::ContactVectors, value));
     }
-    // An earlier response in the pass has made the positions of its bodies not finite.
+    // If an earlier contact in the pass has moved one of the bodies, its response has computed the values.
     let own = pair_particles(scene, pair);
     let has_moved = |contact: &LoggedImpulse| {
         place(contact).is_some_and(|place| place < at)
@@ -181,7 +182,8 @@ fn find_stage_in_single_pass(
     Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
 }
 
-/// Returns the pair of a polynomial of a pass, with its index in the pass.
+/// Returns the pair to which polynomial `index` of a pass belongs, after the pair's index in the pass. Returns `None`
+/// if the pass has fewer polynomials.
 fn locate_pair(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
     pairs(scene).iter().enumerate().find(|(_, pair)| {

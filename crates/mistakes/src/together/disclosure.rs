@@ -30,8 +30,8 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 }
 
 /// Limits explanations to a hint level. Below [`Hints::What`] only the first value that is not finite is left, if there
-/// is one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each has a sentence
-/// without formulas, and the known mistakes that cannot be distinguished from it; exact forms and examples need
+/// is one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each explanation keeps
+/// the known mistakes that cannot be distinguished from it, but loses its exact form and its example. These need
 /// [`Hints::Full`].
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {

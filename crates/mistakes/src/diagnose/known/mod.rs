@@ -98,8 +98,8 @@ pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, m
     KnownMistakes { explanations: padded.into_iter().collect(), unexplained: None, contradicted_keys: denies }
 }
 
-/// Returns the catalogue's explanations, and whether they are complete. It may replace the expected steps by those of a
-/// program with the right approach.
+/// Returns the catalogue's explanations, and whether they are complete. If no mistake explains the steps, it changes
+/// `scan` to a comparison with a program whose approach polynomial is the mathematically right one.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong_steps.is_empty() {
         return (Vec::new(), true);

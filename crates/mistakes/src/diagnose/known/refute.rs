@@ -21,7 +21,8 @@ pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))
 }
 
-/// Returns whether the mistake shows. `work` limits all searches together.
+/// Returns whether the mistake is visible on the scene. `work` counts the work of several calls, which is limited
+/// together.
 pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else { return false };
     if row.area == Area::Response

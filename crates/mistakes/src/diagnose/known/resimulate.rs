@@ -16,7 +16,7 @@ pub(super) enum ApproachForm {
 }
 
 impl ApproachForm {
-    /// Returns a correct program of this form, with a mistake.
+    /// Returns a program of this form that is correct except for `mistake`.
     pub(super) fn with_mistake(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
         match self {

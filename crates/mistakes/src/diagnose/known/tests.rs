@@ -182,7 +182,7 @@ fn half_done_work_with_a_mistake_has_both() {
     are_named(&scene(), &["ph-empty", "response-sign"]);
 }
 
-/// Programs combine any two rows: no combination may crash the search.
+/// A program with an empty detection and any other mistake does not crash.
 #[test]
 fn an_empty_detection_goes_with_every_other_mistake() {
     for row in student::CATALOGUE {
@@ -241,7 +241,7 @@ fn mistakes_of_several_scenes_are_settled_together() {
     assert_eq!(found, ["pp-no-two", "response-sign"]);
 }
 
-/// The reference's rounds of impulses never end from these states, so the program gives up.
+/// The reference's rounds of impulses never end from these states, so these steps have no result.
 #[test]
 fn a_trace_that_leads_nowhere_is_left() {
     let text = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>

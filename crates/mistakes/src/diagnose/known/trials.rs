@@ -7,7 +7,8 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{Row, StepLog, Student, World};
 use std::cell::Cell;
 
-/// Tries programs, and counts the polynomials that they compute. Computing one takes about a third of a microsecond.
+/// Trials of programs, with a count of the polynomials that they compute. Computing one takes about a third of a
+/// microsecond.
 pub(super) struct Trials<'a> {
     /// The scene, prepared for programs of all students.
     world: World,
@@ -56,7 +57,8 @@ impl<'a> Trials<'a> {
         Program(self.world.for_student(student))
     }
 
-    /// Returns the part of the logged step that the program reproduces, from 0 to 1. Polynomials are the first half.
+    /// Returns the part of the logged step that the program reproduces, from 0 to 1. The polynomials count as the first
+    /// half of the step.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;

@@ -44,7 +44,7 @@ const MAX_TRAITS: usize = 3;
 pub struct PairTrait {
     /// The trait in plain words.
     pub description: String,
-    /// The trait's exact form.
+    /// The trait as an exact condition.
     pub exact_condition: String,
     /// The number of right pairs that also have the trait.
     pub right_pairs: u64,
@@ -52,7 +52,8 @@ pub struct PairTrait {
     pub exceptions: u64,
 }
 
-/// Returns the nearby pairs that wrong steps omit or apply twice, and those that they apply once.
+/// Returns the explanation with the nearby pairs whose force the steps omit, apply once or apply twice. Returns `None`
+/// if no pair is omitted or applied twice.
 pub(super) fn explain_pairs(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut remaining_work = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);

@@ -15,7 +15,7 @@ fn scenes() -> Vec<Scene> {
     paths.map(|path| original::read(&fs::read(path).expect("a file")).expect("a scene").scene).collect()
 }
 
-/// Returns the explanations of all traces of a program with this mistake in its search.
+/// Returns the wrong pairs in the traces of a program with this mistake in its search.
 fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
     let student = Student::new(find(id).map(|row| row.mistake));
     let explained = |scene: &Scene| explain(scene, &record_trace(scene, student).expect("a trace"));

@@ -7,7 +7,7 @@ use fosssim_num::vector::{Vec2, length};
 pub(super) struct TraitRow {
     /// The trait in plain words, which follow "in all of them". `{axis}` stands for "horizontally" or "vertically".
     description: &'static str,
-    /// The exact form of the trait. `{axis}` stands for x or y, and `{n}` for a number.
+    /// The trait as an exact condition. `{axis}` stands for x or y, and `{n}` for a number.
     exact_condition: &'static str,
     axes: &'static [TraitAxis],
     /// The numbers with which the trait is tried. The strictest is last.

@@ -45,7 +45,7 @@ pub(super) fn polynomial_matches(expected: &[BoundedValue], logged: &[f64], scal
 }
 
 /// Returns the scale that brings the expected polynomial closest to the logged one. Each coefficient is weighted by its
-/// certainty. Returns `None` if no coefficient is certain, or if the scale is not positive.
+/// precision. Returns `None` if no coefficient exceeds round-off, or if the scale is not positive.
 pub(super) fn fit_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
     fit_scale_to_powers(expected, logged, |_| true)
 }

@@ -1,4 +1,5 @@
-//! The products that a wrong coefficient may contain: products of the formula's letters, and several foreign ones.
+//! The products that a wrong coefficient may contain: products of the formula's letters, and several products with
+//! quantities from outside the formula.
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
@@ -20,12 +21,12 @@ pub(super) struct Product {
 /// The products of one formula.
 pub(super) struct Dictionary {
     letters: Vec<&'static Letter>,
-    /// The candidates for terms.
+    /// The products that are tried as terms of a coefficient.
     pub products: Vec<Product>,
 }
 
 impl Dictionary {
-    /// Creates the dictionary of a reading of a polynomial.
+    /// Creates the dictionary of a polynomial's formula.
     pub fn new(subject: Subject, formula: &'static Formula) -> Self {
         let own = formula.letters.len();
         let is_new = |extra: &&'static Letter| {
@@ -62,7 +63,7 @@ impl Dictionary {
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
 
-    /// Returns the weight that the formula gives a product in a coefficient.
+    /// Returns the weight of a product in the formula's coefficient of this power.
     pub fn weight(&self, formula: &Formula, power: usize, product: usize) -> f64 {
         let letters = &self.products[product].letters;
         let matching = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
@@ -91,8 +92,8 @@ fn three_letter_products(count: usize) -> impl Iterator<Item = Vec<usize>> {
         .flat_map(move |one| (one..count).flat_map(move |two| (two..count).map(move |three| vec![one, two, three])))
 }
 
-/// Returns the products with letters from outside: those of the quartic and of half-planes, which follow the first
-/// `own` letters of the formula.
+/// Returns products with letters from outside the formula, for the quartic and for half-planes. In the dictionary these
+/// letters come after the `own` letters of the formula.
 fn foreign_products(subject: Subject, own: usize) -> Vec<Vec<usize>> {
     let mut lists = Vec::new();
     match subject {

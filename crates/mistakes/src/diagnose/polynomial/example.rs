@@ -7,7 +7,8 @@ use fosssim_student::assignments::t2m2::Input;
 
 fosssim_model::drops_leading!();
 
-/// Returns the example of a study, and the number of characters of its inputs.
+/// Returns the wrong sample with the shortest inputs as an example, after the number of characters of these inputs.
+/// Returns `None` if no sample is wrong.
 pub(super) fn find_smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.is_right);
     let best = wrong.min_by_key(|case| (count_input_characters(case), case.sample.step, case.sample.pass))?;

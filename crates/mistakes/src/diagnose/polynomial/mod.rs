@@ -1,12 +1,12 @@
 //! Finds the mistake that makes detection polynomials wrong.
 //!
-//! The input are samples: the inputs of a detection, and the logged polynomials. A guess is rated by the number of
-//! samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole list
-//! of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
-//! separately), misunderstandings with their own formula, one letter of a formula (`slips`), any other radius
-//! (`radius`), and the terms of single coefficients (`terms`: sparse least squares over the products of dot products,
-//! with weights that are multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor
-//! each. The quintic may be the one that is supplied, or the mathematically right one.
+//! Each sample consists of the inputs of a detection, and the logged polynomials. A guess is rated by the number of
+//! samples that it reproduces to round-off, including right ones. Guesses are about the following, from simple to
+//! intricate: the whole list of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end
+//! positions, radii squared separately), misunderstandings with their own formula, one letter of a formula (`slips`),
+//! any other radius (`radius`), and the terms of single coefficients (`terms`: sparse least squares over the products
+//! of dot products, with weights that are multiples of 1/4). Correct polynomials are those of collisions.md 2, each up
+//! to a positive factor. The quintic may be the supplied one or the mathematically right one.
 //!
 //! The module reads no trace, judges nothing and never uses decisions or responses.
 mod compare;
@@ -44,14 +44,14 @@ const MAX_OTHER_KEYS: usize = 5;
 /// The maximum error of a polynomial that is right except for round-off, relative to the size of its terms.
 const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
-/// The maximum difference in cost from the best guess (see [`Candidate::cost`]) with which a guess is reported together
-/// with it.
+/// The maximum cost (see [`Candidate::cost`]) of guesses that are reported together with the best guess, in addition to
+/// its cost.
 const MAX_COST_DIFFERENCE: f64 = 1.6;
 
-/// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
-/// none is wrong. Partial reproductions come last. A mistake that several polynomials share is reported once. Counts
-/// are of polynomials. A polynomial without an explanation gets one with the key `unexplained`, which reproduces
-/// nothing.
+/// Returns explanations of the wrong polynomials of the samples, or none if all are right. A mistake that several
+/// polynomials share is reported once, and first. Explanations that do not reproduce all samples come last.
+/// [`Explanation::samples`] and [`Explanation::reproduced`] count polynomials. A polynomial without an explanation gets
+/// one with the key `unexplained`, which reproduces nothing.
 ///
 /// A few hundred samples of each kind, from different steps and pairs and including right ones, are enough. Samples
 /// whose formulas overflow are left out. The samples of one kind should include all of its polynomials.
@@ -79,7 +79,7 @@ pub fn explain_polynomials(samples: &[Sample]) -> Vec<Explanation> {
     explanations
 }
 
-/// Returns the explanation that polynomials are missing, if no detection of a kind has all of them.
+/// Returns the explanation that polynomials are missing, if no detection of a kind of pair logs all of them.
 fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
@@ -123,7 +123,7 @@ impl WrongPolynomial<'_> {
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
-    /// Explains this polynomial without the others. It must have at least one candidate.
+    /// Returns the explanation of this polynomial alone. It must have at least one candidate.
     fn explain(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.complete_guesses());
         let first = list_claims(self.study.subject, best).swap_remove(0);
@@ -163,7 +163,8 @@ fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     forms.iter().map(|form| claim_of_form(subject, &candidate.guess, form)).collect()
 }
 
-/// Returns the claim of one exact form. The sentences about coefficients follow from it.
+/// Returns the claim that the program's formula has the exact form `form`. The claim does not contain which
+/// coefficients are wrong, because this follows from the form.
 pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
     let guess = match guess {
         Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
@@ -240,8 +241,8 @@ fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     NAMED_EDITS.iter().filter_map(candidate).collect()
 }
 
-/// Returns the explanation of a polynomial that is right except for more round-off than the rules allow, if no guess is
-/// better.
+/// Returns the explanation that a polynomial is right except for round-off, but has more round-off than the rules
+/// allow. Returns `None` if its error is larger, or if a guess reproduces all samples.
 fn explain_nearly_right(suspect: &WrongPolynomial) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.max_error(), study.cases.len() as u64);
@@ -278,14 +279,14 @@ fn summarize_unexplained(unknown: &[WrongPolynomial]) -> Option<Explanation> {
     })
 }
 
-/// Returns the key of general guesses that reproduces all samples of the most polynomials; on a tie, the likeliest. A
-/// polynomial's own likeliest guess counts for that polynomial. Returns `None` if no key reproduces all samples of a
-/// polynomial.
+/// Returns the key whose general guesses reproduce all samples of the most polynomials; on a tie, the key with the
+/// lowest total cost. For each polynomial, only the first guess with the key is counted. Guesses about radii are left
+/// out. Returns `None` if no key covers at least two polynomials.
 fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen_keys: Vec<&str> = Vec::new();
-        // Wrong radii of several kinds of pairs are rather mistakes with names of their own.
+        // If radii of several kinds of pairs are wrong, other guesses describe the mistake better.
         let is_shared = |guess: &Guess| guess.is_general() && *guess != Guess::Quantity(QuantityGuess::Radius);
         for candidate in suspect.complete_guesses().filter(|candidate| is_shared(&candidate.guess)) {
             let key = candidate.guess.key();

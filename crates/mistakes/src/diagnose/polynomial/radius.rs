@@ -20,7 +20,7 @@ const SQUARE_TOLERANCE: f64 = 1e-9;
 /// Radii are reported as multiples of one over this number.
 const RESOLUTION: f64 = 1e9;
 
-/// The cost of the guess. Every wrong radius with a name of its own costs less.
+/// The cost of the guess. Every guess about a particular wrong radius costs less.
 const COST: f64 = 4.6;
 
 /// Returns the guess that only the radii are wrong. A single coefficient could be wrong for many reasons. Therefore a
@@ -66,8 +66,8 @@ fn overlap(subject: Subject, inputs: &Inputs, square: BoundedValue) -> Vec<Bound
     readings(subject)[0].polynomial(&Inputs { square, ..*inputs })
 }
 
-/// Returns the square of the sum of the radii that the logged overlap contains, by least squares; `None` if it has no
-/// root.
+/// Returns the square of the sum of the radii that the logged overlap contains, by least squares, or `None` if it is
+/// negative.
 fn fit_square(subject: Subject, case: &PolynomialSample) -> Option<f64> {
     let [without, with_one] = [0.0, 1.0].map(|square| overlap(subject, &case.inputs, BoundedValue::from_exact(square)));
     let (mut product, mut norm) = (0.0, 0.0);

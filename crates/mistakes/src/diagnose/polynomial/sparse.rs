@@ -1,8 +1,8 @@
 //! Sparse least squares: finds few columns whose weighted sum is a given vector.
 //!
-//! Small supports are tried exhaustively with the normal equations of unit columns, larger ones by orthogonal matching
-//! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). The
-//! result is a proposal, which the caller must check against every sample.
+//! Small supports (sets of columns) are tried exhaustively with the normal equations of unit columns, larger ones by
+//! orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar
+//! Conference, 1993). The result is a proposal, which the caller must check against every sample.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -65,8 +65,8 @@ impl DesignMatrix {
         Self { indices, unit, norms, gram, likely_count }
     }
 
-    /// Finds proposals for `target`, in the order of their sizes. `accept` is called with each proposal, and returns
-    /// whether the proposal is correct. Returns the accepted ones of the smallest size.
+    /// Returns the accepted proposals of the smallest size whose weighted sum is `target`. `accept` is called with each
+    /// proposal, in the order of sizes, and returns whether the proposal is correct.
     pub fn find_supports(
         &self,
         target: &[f64],
@@ -164,7 +164,7 @@ struct PartialSelection {
 }
 
 impl FitProblem<'_> {
-    /// Reports all choices of `size` columns among the first `among` that leave no residual.
+    /// Calls `found` with all choices of `size` columns among the first `among` that leave no residual.
     fn search(
         &self,
         partial: &mut PartialSelection,

@@ -32,7 +32,7 @@ fn new_candidate(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, 
     Candidate { guess: Guess::List(guess), details, forms: Vec::new(), cost, reproduced }
 }
 
-/// Adds properties that need no prediction.
+/// Adds guesses about properties of the logged list, which need no predicted polynomial.
 fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, detail, cost, holds: &dyn Fn(&PolynomialSample) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
@@ -149,8 +149,8 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Returns the guess that every displacement has the same factor (velocities, for example), so that each coefficient
-/// has a power of this factor.
+/// Returns the guess that every displacement is multiplied by the same factor (because it is a velocity, for example).
+/// Each coefficient is then multiplied by a power of this factor.
 fn guess_scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &PolynomialSample| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;

@@ -39,7 +39,7 @@ pub(super) struct PolynomialSample<'a> {
     pub inputs: Inputs,
     /// The coefficients that should have been logged. The quintic is in the form that the course supplies.
     pub expected: Vec<BoundedValue>,
-    /// Whether the logged polynomials are right, in any accepted form.
+    /// Whether the logged polynomial is right, in any accepted form.
     pub is_right: bool,
     /// The positive factor that the submission's polynomials seem to have in this sample.
     pub scale: f64,
@@ -61,7 +61,7 @@ pub(super) struct PolynomialStudy<'a> {
 pub(super) struct Candidate {
     /// The guess itself.
     pub guess: Guess,
-    /// The exact form of the guess.
+    /// The exact form of the guess, as details of the report.
     pub details: Vec<PolynomialDetail>,
     /// All exact forms that reproduce as much, the likeliest first. The list is empty if there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
@@ -73,7 +73,7 @@ pub(super) struct Candidate {
 }
 
 impl<'a> PolynomialStudy<'a> {
-    /// Collects the logged values of a polynomial. Returns `None` if no sample is wrong.
+    /// Creates the study of one polynomial from all samples. Returns `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
         let mut cases: Vec<PolynomialSample<'a>> = samples
@@ -108,9 +108,9 @@ impl<'a> PolynomialStudy<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// Returns the number of samples that a predicted polynomial reproduces: with the submission's usual scale, without
-    /// a scale, or otherwise with any positive scale. The flag is set in the last case. Returns `None` if fewer than
-    /// half of the wrong samples are reproduced.
+    /// Returns the number of samples that a predicted polynomial reproduces: with the sample's scale
+    /// ([`PolynomialSample::scale`]) or without a scale, or otherwise with any positive scale. The flag is set in the
+    /// last case. Returns `None` if fewer than half of the wrong samples are reproduced.
     pub fn count_predicted(&self, predict: impl Fn(&PolynomialSample) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &PolynomialSample| {
             let predicted = predict(case);
@@ -180,7 +180,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Finds the positive factor that most coefficients agree on: 1, another factor for all samples, or one for each
     /// sample.
     fn find_scales(&mut self) {
-        // A scale other than 1 must match a tenth more coefficients, because the median ratio always matches some
+        // A scale other than 1 must match clearly more coefficients, because the median ratio always matches some
         // coefficient.
         let unscaled = self.count_agreements(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
         let mut best: (f64, Option<Vec<f64>>) = (unscaled, None);
@@ -268,7 +268,8 @@ impl<'a> PolynomialStudy<'a> {
     }
 }
 
-/// Returns the ratio of the logged to the expected coefficient, if the difference exceeds round-off.
+/// Returns the ratio of the logged to the expected coefficient, or `None` if the expected one is too small for an
+/// accurate ratio.
 pub(super) fn ratio(case: &PolynomialSample, power: usize) -> Option<f64> {
     let expected = expected_at(&case.expected, power);
     let ratio = logged_at(case.logged, power)? / expected.value;
@@ -287,8 +288,8 @@ pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item 
     (0..count).map(move |index| index * length / count)
 }
 
-/// Returns whether a prediction matches the logged polynomial at some scale. If fewer than two coefficients are
-/// certain, every scale fits, so the case's own scale is used.
+/// Returns whether a prediction matches the logged polynomial at some scale. If fewer than two coefficients exceed
+/// round-off, some scale always fits, so the sample's own scale is used.
 fn fits_at_any_scale(predicted: &[BoundedValue], case: &PolynomialSample) -> bool {
     if predicted.iter().filter(|coefficient| exceeds_round_off(**coefficient)).count() < 2 {
         return polynomial_matches(predicted, case.logged, case.scale);
@@ -296,7 +297,7 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &PolynomialSample) -> boo
     fit_scale(predicted, case.logged).is_some_and(|scale| polynomial_matches(predicted, case.logged, scale))
 }
 
-/// Treats wrong samples as right if they match with the usual scale of right samples. With a small scale, the course's
+/// Treats wrong samples as right if they match with the median scale of right samples. With a small scale, the course's
 /// library drops coefficients that matter, so the scale cannot be fitted to each sample.
 fn accept_small_scales(cases: &mut [PolynomialSample]) {
     let scales = cases.iter().filter(|case| case.is_right).filter_map(|case| fit_scale(&case.expected, case.logged));

@@ -145,7 +145,8 @@ impl<'a> TermFit<'a> {
             .all(|index| self.is_reproduced(index, power, self.predict(index, power, Some(edit))))
     }
 
-    /// Returns the explanations of a coefficient that hold for all samples.
+    /// Returns the edits of a coefficient that explain all samples, or only [`CoefficientEdit::Unknown`] if there are
+    /// none.
     fn explain_coefficient(&self, power: usize) -> CoefficientEdits {
         let terms =
             self.find_term_changes(power).into_iter().map(|(changes, cost)| (CoefficientEdit::Terms(changes), cost));
@@ -239,7 +240,7 @@ impl<'a> TermFit<'a> {
         term.map_or(0, |term| term.letters.iter().map(|&letter| self.formula.letters[letter].order).sum())
     }
 
-    /// Returns the cost of an additional weight.
+    /// Returns the cost of a change of a product's weight.
     fn cost(&self, power: usize, order: u8, (product, change): (usize, f64)) -> f64 {
         let weight = self.dictionary.weight(self.formula, power, product);
         let entry = &self.dictionary.products[product];
@@ -255,7 +256,7 @@ impl<'a> TermFit<'a> {
         }
     }
 
-    /// Returns the samples of a fit: those with a wrong coefficient, and several others.
+    /// Returns the indices of the samples of a fit: those with a wrong coefficient, and several others.
     fn fit_rows(&self, power: usize) -> Vec<usize> {
         let usable = |&index: &usize| {
             let logged = logged_at(self.case(index).logged, power);
@@ -322,7 +323,7 @@ impl TermFit<'_> {
         }
     }
 
-    /// Returns all polynomials that follow from the guesses, the likeliest first.
+    /// Returns the exact forms of the whole polynomial that follow from the coefficients' edits, the likeliest first.
     fn forms(&self, guesses: &[CoefficientEdits]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
             let of_edit = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);

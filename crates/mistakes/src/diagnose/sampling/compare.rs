@@ -20,7 +20,7 @@ use fosssim_student::{Contact, Record};
 
 fosssim_model::drops_leading!();
 
-/// The largest differences between equal numbers.
+/// The largest differences between numbers that count as equal.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
     /// The tolerance of a coefficient, relative to itself.
@@ -198,7 +198,8 @@ pub fn polynomial_matches(expected: &[f64], actual: &[f64], tolerance: &Toleranc
     factor > 0.0 && factor.is_finite() && is_multiple(expected, actual, factor, tolerance)
 }
 
-/// Returns whether two polynomials are equal, for formulas whose coefficients were not dropped.
+/// Returns whether a logged polynomial is a positive multiple of a formula's complete result, without the result's
+/// small leading coefficients.
 pub fn formula_matches(expected: &[BoundedValue], actual: &[f64], tolerance: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
     polynomial_matches(trim(&values), actual, tolerance)

@@ -124,8 +124,8 @@ impl SampleCollector<'_> {
 }
 
 /// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
-/// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pairs` are the pairs of
-/// one pass.
+/// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pairs` contains the
+/// number of pairs of each kind in one pass.
 fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
     let fits = |sizes: &PairKindMap<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();

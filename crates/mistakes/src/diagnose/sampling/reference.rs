@@ -6,7 +6,7 @@ use fosssim_model::{
 };
 use std::cell::Cell;
 
-/// Simulates steps for all parts of an explanation, within one budget.
+/// The simulator that all parts of an explanation use, within one budget.
 pub struct Reference<'a> {
     simulation: Simulation,
     budget: Budget<'a>,

@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of kept steps of each sort, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
-/// The number of similar wrong steps that are all kept. Only some of the further ones are kept.
+/// The number of similar wrong steps that are all kept. One in [`SIMILAR_SAMPLING_RATE`] of the further ones is kept.
 const MAX_SIMILAR_WRONG: u32 = 8;
 const SIMILAR_SAMPLING_RATE: u32 = 16;
 /// The number of similar right steps that are kept.
@@ -87,7 +87,7 @@ impl Scan {
     }
 }
 
-/// Examines the steps of a trace, one after the other.
+/// An examination of a trace, one step after the other.
 pub struct Scanner {
     has_mid: bool,
     round_off: Tolerance,

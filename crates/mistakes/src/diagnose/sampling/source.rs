@@ -8,7 +8,7 @@ use fosssim_model::{
 };
 use fosssim_num::tolerances::FIRST_RECORD_ERROR;
 
-/// The number of records at the beginning of the trace that are always kept.
+/// The maximum number of records at the beginning of the trace that are kept.
 const OPENING_RECORDS: usize = 25;
 const MAX_OPENING_BYTES: usize = 4 << 20;
 
@@ -97,7 +97,7 @@ impl Outline {
     }
 }
 
-/// Reads the steps of a trace's first 64 MiB, up to the first damage.
+/// A reader of the steps in a trace's first 64 MiB, up to the first damage.
 pub struct StepReader<'a> {
     layout: Layout,
     reader: LenientReader<&'a [u8]>,

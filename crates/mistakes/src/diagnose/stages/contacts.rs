@@ -22,7 +22,7 @@ pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
         .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Returns the explanation that some pairs are not tested. It needs a step whose log consists of the expected
+/// Returns the explanation that some pairs are not tested. At least one step's log must consist of the expected
 /// polynomials without those of some pairs.
 pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> {
     let skipped: Vec<Vec<(PairKind, f64)>> =
@@ -45,22 +45,23 @@ fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
     (at > 0 && at == logged && !skipped.is_empty()).then_some(skipped)
 }
 
-/// Returns the kind of each pair whose polynomials are among the first `size` expected ones, and their places.
+/// Returns the kind of each pair whose polynomials are among the first `size` expected ones, and the range of their
+/// indices.
 fn pair_blocks(facts: &StepFacts, size: usize) -> impl Iterator<Item = (PairKind, Range<usize>)> {
     let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
     let blocks = facts.detections.iter().zip(ends).map(|((pair, first), end)| (pair.kind, *first..end));
     blocks.take_while(move |(_, block)| block.end <= size)
 }
 
-/// Returns whether the first `size` logged polynomials contain those of a block, from the place `at` on.
+/// Returns whether the first `size` logged polynomials contain those of a block, from index `at` on.
 fn is_logged_at(facts: &StepFacts, block: &Range<usize>, at: usize, size: usize) -> bool {
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
     let matches = |index: usize| polynomial_matches(ours.get(index), theirs.get(at + index - block.start), &ROUND_OFF);
     at + block.len() <= size && block.clone().all(matches)
 }
 
-/// Returns whether nearly all pairs of the first pass are complete but some are out of order. Pairs that an earlier
-/// contact of the pass has moved are not found.
+/// Returns whether the log contains the pairs of the first pass, but some of them out of order. A few pairs may be
+/// missing, because a pair is not recognized after an earlier contact of the pass has moved it.
 fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
     if facts.actual.end.polynomials.len() < size {
@@ -112,8 +113,8 @@ pub(super) fn explain_detection(facts: &[StepFacts]) -> Option<Explanation> {
     contacts.explain_times().or_else(|| contacts.explain_decisions()).or_else(|| contacts.explain_vectors())
 }
 
-/// Returns the fault in the contacts at the end of steps, each compared with the reference's. The first difference of a
-/// step counts, because later ones in the pass may follow from it.
+/// Returns the fault in contacts that are detected at the end of a step. `steps` contains the reference's contacts and
+/// the logged ones of each step. Only the first difference of a step counts, because later ones may follow from it.
 pub(super) fn explain_overlaps(
     scene: &Scene,
     steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)],

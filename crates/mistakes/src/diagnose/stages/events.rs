@@ -111,7 +111,7 @@ impl Observer for StepEvents<'_> {
 /// The index of an edge's approach among its polynomials.
 const APPROACH_INDEX: usize = 3;
 
-/// Steers a step so that nothing collides.
+/// A controller with which nothing collides in a step.
 struct NoCollisions;
 
 impl StepController for NoCollisions {
@@ -120,7 +120,7 @@ impl StepController for NoCollisions {
     }
 }
 
-/// A step of the submission, and the reference's.
+/// A step of the submission, and the reference's step from the same state.
 pub(super) struct StepFacts {
     /// Whether anything in the step differs.
     pub(super) is_wrong: bool,
@@ -239,7 +239,8 @@ impl StepFacts {
     }
 }
 
-/// Replaces the expected approach of an edge by its other form if the trace logged that, because both are right.
+/// Replaces the expected approach of an edge by its other form if the trace logged the other form, because both are
+/// right.
 fn accept_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
     let theirs = &actual.end.polynomials;
     let is_right =

@@ -3,8 +3,8 @@
 //! In a trace the results of a stage follow from those of the previous stage: polynomials from the state, contacts from
 //! the polynomials, the state in the middle from the contacts, zones from that state. Therefore the stage to check is
 //! the first one whose results are wrong although everything before is right. The features that its wrong results have
-//! in common (a factor, a kind of pair, a body) show the place. The results are observations, not guesses. No stage is
-//! reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
+//! in common (a factor, a kind of pair, a body) show what to check. The results are observations, not guesses. No stage
+//! is reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
 mod contacts;
 mod events;
 mod responses;
@@ -76,7 +76,7 @@ fn new_observation(fault: StageFault, details: Vec<StageDetail>, samples: usize)
     }
 }
 
-/// Returns the value to which all of `values` are equal, up to round-off.
+/// Returns the value to which all of `values` are equal up to round-off, if there is one.
 fn common_value(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);

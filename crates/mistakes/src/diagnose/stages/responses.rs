@@ -20,7 +20,7 @@ const ROUND_OFF_LIMIT: f64 = 1e-11;
 /// The change caused by a contact.
 #[derive(Debug, Clone, Copy)]
 struct Change {
-    /// The ratio to the expected value along the contact vector, or `None` if the expected value is zero.
+    /// The ratio of the actual to the expected change along the contact vector, or `None` if no change is expected.
     ratio: Option<f64>,
     /// Whether the component perpendicular to the contact vector also changed.
     changes_across: bool,

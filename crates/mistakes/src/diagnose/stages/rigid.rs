@@ -25,7 +25,7 @@ pub(super) fn explain_geometric_part(scene: &Scene, facts: &[StepFacts]) -> Opti
     }
     let is_seen = |facts: &&StepFacts| facts.has_right_mid_state() && !may_be_round_off(scene, facts);
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
-    // The other steps have a different fault, which may affect these steps as well.
+    // If other steps have a different fault, it may affect these steps as well.
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_mid_state()) {
         return None;
     }
@@ -45,8 +45,8 @@ pub(super) fn explain_geometric_part(scene: &Scene, facts: &[StepFacts]) -> Opti
         .or_else(|| explain_rounds(scene, &wrong))
 }
 
-/// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds.
-/// These are right up to round-off, on which small coefficients depend.
+/// Returns whether the first geometric pass may differ only by round-off, because it is right for the logged positions
+/// after the impulse rounds. Small coefficients depend on the round-off of these positions.
 fn may_be_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.mid_states().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = polynomial_index_after(facts, 0) / facts.pass_size();
@@ -148,7 +148,7 @@ fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     new_observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
 }
 
-/// The results of the zones of first rounds.
+/// The results of the zones in the first round of each step.
 #[derive(Default)]
 struct ZoneMotions {
     results: Vec<ZoneResult>,
@@ -322,7 +322,7 @@ impl MotionErrors {
     }
 }
 
-/// Returns the fault in the rotations of zones, if some zones do not rotate as expected.
+/// Returns the fault in the rotations of zones, from the ratios of their actual to their expected rotations.
 fn describe_turn(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= RATIO_TOLERANCE));
     if wrong().all(|ratio| ratio.abs() <= RATIO_TOLERANCE) {

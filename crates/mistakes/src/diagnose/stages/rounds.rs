@@ -58,7 +58,7 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
         }
     }
     let sort = |ordering: Ordering| seen_counts.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
-    // Most of the faults must be of this kind; the other faults may follow from it.
+    // At least half of the wrong steps must have this fault. The faults of the other steps may follow from it.
     if seen_counts.is_empty() || 2 * seen_counts.len() < wrong.len() {
         return None;
     }
@@ -137,7 +137,7 @@ fn explain_handover(wrong: &[&StepFacts], responses: &Responses) -> Option<Expla
     Some(new_observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
 }
 
-/// The contacts of the first round, as seen from the second detection of a step.
+/// The contacts of the first round, as the second pass of each step shows them.
 #[derive(Default)]
 struct SecondPass {
     /// The number of isolated contacts with right velocities afterwards.

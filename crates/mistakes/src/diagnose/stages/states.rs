@@ -1,5 +1,5 @@
-//! Finds the features of wrong steps if traces log states: contacts at the end of a step, then velocities, then
-//! positions. An observation names the place to check, without a guess.
+//! Finds what the wrong steps of a trace without polynomials have in common: contacts at the end of a step, then
+//! velocities, then positions. An observation names the place to check, without a guess.
 use super::{Explanation, common_value, contacts::explain_overlaps, new_observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
@@ -19,7 +19,7 @@ struct WrongEntry {
     expected: f64,
 }
 
-/// Returns the observation about `steps`.
+/// Returns the observation about the wrong steps among `steps`, if they have something in common.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,

@@ -69,7 +69,7 @@ pub(super) struct FirstRound<'a> {
     /// The end state of the step, which shows the first round's effect on the examined zones.
     pub(super) end: &'a State,
     pub(super) zones: Vec<ParticleGroup>,
-    /// The zone of each contact.
+    /// The contacts, each as a zone of its own.
     contacts: Vec<ParticleGroup>,
     /// The index of the second geometric pass among the logged passes.
     second: usize,
@@ -106,12 +106,12 @@ impl<'a> FirstRound<'a> {
         self.rounds == 1 || self.facts.fits_motion(self.scene, self.second, &self.end.positions, is_own)
     }
 
-    /// Returns whether a zone's particles end in the right positions, so that the zone proves nothing.
+    /// Returns whether a zone's particles end in the expected state, so that the zone proves nothing.
     pub(super) fn is_at_rest(&self, zone: &ParticleGroup) -> bool {
         self.are_at(&self.expected_state(zone), &zone.particles)
     }
 
-    /// Returns the contacts of a zone, one of each group of similar ones.
+    /// Returns the contacts of a zone, without repetitions.
     pub(super) fn zone_contacts(&self, zone: &ParticleGroup) -> Vec<&ParticleGroup> {
         let mut own: Vec<&ParticleGroup> = Vec::new();
         for contact in self.contacts.iter().filter(|contact| zone.contains(contact)) {
@@ -135,8 +135,8 @@ impl<'a> FirstRound<'a> {
         }
     }
 
-    /// Returns whether a zone's particles end where they would if its contacts were moved separately in every round, or
-    /// not all together.
+    /// Returns whether a zone's particles end where they would if its contacts formed several zones, which move one
+    /// after the other in every round.
     pub(super) fn is_split(&self, zone: &ParticleGroup) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
             let groups: Vec<&ParticleGroup> = groups.iter().collect();
@@ -182,7 +182,8 @@ impl<'a> FirstRound<'a> {
         if stops { self.stop_result(zone, &stopped) } else { self.motion_result(zone) }
     }
 
-    /// Returns whether other zones, each moved correctly, explain the positions of the zone's particles.
+    /// Returns the fault in the choice of zones, if other zones, each moved correctly, explain the states of the zone's
+    /// particles.
     fn find_other_zones(&self, zone: &ParticleGroup) -> Option<ZoneResult> {
         if self.is_split(zone) {
             return Some(ZoneResult::Wrong(WrongZones::NotMerged));
@@ -201,7 +202,7 @@ impl<'a> FirstRound<'a> {
         if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
-        // A part of the zone is tried, alone or with particles that are in no zone.
+        // Each part of the zone is tried, alone and with particles that are in no zone.
         let parts = (1..1_u32 << zone.particles.len()).map(|bits| {
             let is_in = |(bit, _): &(usize, &usize)| bits >> bit & 1 == 1;
             zone.particles.iter().enumerate().filter(is_in).map(|(_, particle)| *particle).collect::<Vec<usize>>()

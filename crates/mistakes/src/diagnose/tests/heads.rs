@@ -48,7 +48,7 @@ fn stage(fault: StageFault) -> Explanation {
     )
 }
 
-/// Returns the statements of all explanations, each with the number of traces that agree.
+/// Returns the statements of all traces together, each with the number of traces that agree.
 fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
     let heads = explain_together(traces.iter().map(Vec::as_slice), &[]);
     let count = |head: &Explanation| traces.iter().filter(|list| is_named_in(head, list)).count();
@@ -111,7 +111,7 @@ fn a_stage_may_be_the_second_mistake() {
     let mut traces = vec![vec![first.clone()]; 3];
     traces.extend(vec![vec![motion.clone()]; 2]);
     assert_eq!(heads(&traces), words(&[(&first, 3), (&motion, 2)]));
-    // In traces that the first one explains, it follows.
+    // In traces that the first mistake explains, the wrong stage follows from it.
     assert_eq!(heads(&vec![vec![first.clone(), motion]; 4]), words(&[(&first, 4)]));
 }
 
@@ -341,7 +341,7 @@ fn the_first_nan_comes_after_proven_mistakes() {
     );
 }
 
-/// Each scene alone suggests something else about the same quantity, which is one that no name fits.
+/// Each scene alone suggests another mistake in the same quantity, so the program makes none of them.
 #[test]
 fn names_that_exclude_each_other_are_not_reported_together() {
     let fault = StageFault::ContactVectors { kind: None, wrong: WrongVectors::Reversed };

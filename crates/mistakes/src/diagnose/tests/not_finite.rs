@@ -47,7 +47,7 @@ fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NonFiniteValue {
     *found
 }
 
-/// Makes all later values NaN, as a program would.
+/// Makes values of these bodies NaN in all records of `frames`, as a program would.
 fn spoil(frames: &mut [LenientFrame], bodies: &[usize]) {
     for frame in frames {
         for &body in bodies {
@@ -89,7 +89,7 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
             continue;
         }
         let right = frames(&scene);
-        // These are the steps whose geometric part moves a body: the end state differs from the mid state.
+        // This is the first step whose geometric part moves a body: its end state differs from its mid state.
         let Some(end) = (2..right.len()).step_by(2).find(|&end| right[end].state != right[end - 1].state) else {
             continue;
         };
@@ -114,7 +114,7 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
     assert!(seen > 2, "{seen}");
 }
 
-/// A value in only one record was not made by a step, or did not affect the next one.
+/// If only one record contains such a value, no step computed it, or the next step did not use it.
 #[test]
 fn numbers_that_become_finite_again_are_reported() {
     let struck = Scene { duration: 3.0, ..scene("edges-struck") };

@@ -25,7 +25,7 @@ fn both_readers_give_the_scenes_back() {
     }
 }
 
-/// The values of the detections of a kind.
+/// The values that the detections of a scene compute.
 #[derive(Default)]
 struct Seen {
     /// The largest absolute value of each coefficient, by kind and polynomial, from the lowest power.

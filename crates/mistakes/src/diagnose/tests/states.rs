@@ -90,7 +90,7 @@ fn a_contact_after_a_wrong_response_is_no_wrong_detection() {
     assert!(told.len() == 1 && is_change(&told[0]), "{told:#?}");
 }
 
-/// In t2m1 students write responses, so a right scene with a collision contradicts an empty one.
+/// In t2m1 students write responses, so a right scene with a collision contradicts an empty response.
 #[test]
 fn a_right_collision_contradicts_an_empty_response() {
     assert!(mistake_is_visible(&scene(BALLS), "respond-particles-missing"));

@@ -68,8 +68,7 @@ fn names(told: &[Explanation], id: &str) -> bool {
     told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id))
 }
 
-/// Each row gives a wrong trace of a scene of its milestone, and is named for it. In the scenes of earlier milestones
-/// no other mistake is named.
+/// Each mistake is named on at least one scene. No other mistake is named instead on the scenes before it.
 #[test]
 fn every_mistake_of_states_is_named_and_taken_for_no_other() {
     let (mut named, mut asked, mut mistaken) = (BTreeSet::<&str>::new(), BTreeSet::new(), Vec::new());
@@ -169,8 +168,8 @@ fn forces_that_are_not_cleared_between_steps_are_named() {
     assert!(told.len() == 1 && told[0].key == "explicit-velocities-not-cleared", "{told:#?}");
 }
 
-/// Each scene has another arithmetic: forces summed in another order, products fused with sums, or states with the
-/// round-off of another solver.
+/// Each scene is computed with a different arithmetic: forces summed in another order, products fused with sums, or
+/// states with the round-off of another solver.
 #[test]
 fn correct_programs_of_these_milestones_have_no_explanation() {
     for (index, (name, scene)) in scenes().into_iter().enumerate() {

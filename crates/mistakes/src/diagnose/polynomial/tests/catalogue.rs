@@ -118,7 +118,7 @@ fn concerns_polynomials(row: &Row) -> bool {
     areas.contains(&row.area) && !row.id.ends_with("-empty")
 }
 
-/// Correct variants that this search would report as wrong. It is used only if the judge finds an error.
+/// Correct variants that this search would report as wrong. The search is used only if the judge finds an error.
 const ACCUSED_IF_ASKED: [&str; 4] =
     ["normalized-largest", "normalized-norm", "normalized-per-pair", "interpolated-all"];
 
@@ -221,7 +221,7 @@ fn explanations_say_what_the_catalogue_says() {
     }
 }
 
-/// Three samples fit three weights of any size, which proves nothing: the radii are multiplied here.
+/// Three weights of any size fit three samples, which proves nothing. The radii are multiplied here.
 #[test]
 fn odd_weights_from_few_samples_are_not_named() {
     let multiplied = |motion: &PairMotion| {

@@ -1,4 +1,5 @@
-//! Explains students with one mistake each on random motions. The explanation must name it and reproduce everything.
+//! Explains students with one mistake each on random motions. The explanation must name the mistake and reproduce
+//! everything.
 mod catalogue;
 mod radius;
 
@@ -109,7 +110,7 @@ fn quartic(l: &Letters) -> Vec<f64> {
 }
 
 /// Returns the supplied quintic, or with `slip` false the mathematically right one. `d` is an argument because one
-/// student confuses it.
+/// student confuses it with another letter.
 fn quintic(l: &Letters, d: f64, slip: bool) -> Vec<f64> {
     let (a, b, c, e, f, g, h) = (l.g, l.h, l.i, l.e, l.a, l.b, l.c);
     let (i, j) = (-g, -h);
@@ -194,7 +195,7 @@ fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&P
     }
 }
 
-/// Returns the guess that another quantity replaces this letter of the assignment's formula.
+/// Returns a test for the guess that another quantity replaces this letter of the assignment's formula.
 fn stands(subject: Subject, letter: &'static str, stand: Substitute) -> impl Fn(&PolynomialDetail) -> bool {
     let reading = Reading { subject, number: 0 };
     move |detail| *detail == PolynomialDetail::StandsFor { reading, letter: letter.into(), stand: stand.clone() }
@@ -512,7 +513,7 @@ fn small_slips_in_quadratics_are_named() {
 }
 
 /// A mistake in only half of the pairs is reported with its share. An error that is no simple mistake is reported as
-/// such.
+/// unexplained.
 #[test]
 fn partly_reproduced_mistakes_are_marked() {
     let partly = explain_polynomials(&samples(PairKind::ParticleEdge, 300, |motion| {
