@@ -84,7 +84,7 @@ impl<N: Number + Modulus> Mul for BoundedValue<N> {
     }
 }
 
-/// A divisor of 0 gives the division's quotient, with an infinite or NaN bound.
+/// If the divisor is 0, the bound is infinite or NaN.
 impl Div for BoundedValue {
     type Output = Self;
     #[inline]
@@ -113,8 +113,8 @@ impl Mul<BoundedValue> for f64 {
     }
 }
 
-/// The maximum absolute value of a number; differences count as sums. With it, a formula gives upper bounds of its
-/// results and their error bounds, whatever the signs.
+/// An upper bound of a number's absolute value. A difference is computed as a sum. A formula of such numbers gives
+/// upper bounds of its results and of their error bounds, whatever the signs.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Magnitude(pub f64);
 

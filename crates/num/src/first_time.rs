@@ -11,7 +11,8 @@ use super::{
 };
 
 /// Returns the earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3).
-/// Polynomials must have been created by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
+/// Polynomials must have been created by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build of
+/// root-finder.md 15.1).
 ///
 /// All polynomials are solved, even if an earlier one is nowhere positive, because this decides whether the search
 /// ends. The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. It is `+inf` if the
@@ -58,7 +59,7 @@ pub fn first_time_of_lists<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Re
     intersect_sets::<32>(lists.into_iter(), &mut 0)
 }
 
-/// Returns the intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
+/// Returns the first time in the intersection of the positive sets, which may consist of at most `CAPACITY` intervals.
 #[inline]
 fn intersect_sets<'a, const CAPACITY: usize>(
     mut lists: impl Iterator<Item = &'a [f64]>,

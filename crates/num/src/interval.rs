@@ -24,10 +24,11 @@ impl Interval {
     }
 }
 
-/// A list of at most `CAPACITY` intervals, normalized unless it is being filled.
+/// A list of at most `CAPACITY` intervals. It is normalized (sorted, and without intervals that touch), except while it
+/// is filled.
 ///
-/// The positive set of a polynomial of degree six has at most four intervals, and that of a parabola two. Each further
-/// polynomial of an intersection adds at most one less than its own number.
+/// The positive set of a polynomial of degree six has at most four intervals, and that of a parabola two. An
+/// intersection with a further set adds at most one interval less than this set has.
 #[derive(Debug, Clone, Copy)]
 pub struct Intervals<const CAPACITY: usize> {
     length: usize,

@@ -2,8 +2,8 @@
 //! take the time of one.
 //!
 //! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on the grouping of numbers.
-//! Only the sign of a NaN may differ, which the compiler chooses, so code that needs its bits must exclude NaN. The
-//! number of lanes depends on the machine ([`Instructions`]); it is one without wide instructions.
+//! Only the sign of a NaN may differ, because the compiler chooses it, so code that needs its bits must exclude NaN.
+//! The number of lanes depends on the machine ([`Instructions`]); it is one without wide instructions.
 use super::vector::Vec2;
 use pulp::Arch;
 pub use pulp::Simd;
@@ -95,7 +95,8 @@ impl Instructions {
         if pairs < MIN_PAIRS { Self::scalar() } else { Self::default() }
     }
 
-    /// Chooses the width for systems of linear equations with `unknowns` unknowns.
+    /// Returns the widest instructions for systems of linear equations with `unknowns` unknowns, if the check is worth
+    /// the time.
     pub fn for_unknowns(unknowns: usize) -> Self {
         if unknowns < MIN_UNKNOWNS { Self::scalar() } else { Self::default() }
     }
@@ -116,8 +117,8 @@ impl Instructions {
 pub trait LaneWork {
     /// The type of the result.
     type Output;
-    /// Performs the work. It must always be inlined, with everything that it calls and without closures, which would be
-    /// compiled for other instructions, because the callers are compiled once for each set of instructions.
+    /// Performs the work. Its callers are compiled once for each set of instructions. It must therefore be inlined,
+    /// like everything that it calls. It must not use closures, because these would be compiled for other instructions.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 

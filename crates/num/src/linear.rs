@@ -59,7 +59,7 @@ struct Decomposition<'a> {
     n: usize,
     row_swaps: &'a mut Vec<usize>,
     column_order: &'a mut Vec<usize>,
-    /// The largest absolute value in the rows that have no pivot yet. NaN is ignored.
+    /// For each column, the largest absolute value in the rows that have no pivot yet. NaN is ignored.
     moduli: &'a mut Vec<f64>,
 }
 
@@ -123,7 +123,7 @@ impl Decomposition<'_> {
     fn exchange(&mut self, k: usize, pivot: &Pivot) {
         let n = self.n;
         self.row_swaps[k] = pivot.row;
-        // The compiler can then prove that both rows are in each column.
+        // With this check, the compiler can prove that both rows are in each column.
         assert!(k < n && pivot.row < n, "the pivot must be in the matrix");
         if pivot.row != k {
             for column in self.matrix.chunks_exact_mut(n) {

@@ -56,7 +56,8 @@ impl Polynomial {
         }
     }
 
-    /// Creates a polynomial from an unchanged list (the non-dropping build of later milestones).
+    /// Creates a polynomial without dropping small leading coefficients, as the library of later milestones does
+    /// (root-finder.md 15.1, the non-dropping build).
     ///
     /// # Panics
     /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.

@@ -120,14 +120,14 @@ pub const FAIR_MOMENT_ROUNDINGS: f64 = 8.0;
 /// could change times of impact.
 pub const FAIR_LOSS_FACTOR: f64 = 4.0;
 
-/// Fair: factors are outliers, which prove no missing polynomial, if their binary exponent differs from the mean of
-/// their kind by more than this many standard deviations. A factor of fewer than one polynomial in ten is an outlier as
-/// well. With larger values few polynomials could prove many; with smaller ones programs with several factors would be
-/// rejected.
+/// Fair: factors are outliers, which prove nothing about missing coefficients, if their binary exponent differs from
+/// the mean of their kind by more than this many standard deviations. By this rule, a different factor that fewer than
+/// one polynomial in ten shows is an outlier. With larger values few polynomials could prove many; with smaller ones
+/// programs with several factors would be rejected.
 pub const FAIR_OUTLIER_DEVIATIONS: f64 = 3.0;
 
-/// Fair: states may be this many times as large, or as close together, as any state of the reference's own run; beyond
-/// that, no state can be judged.
+/// Fair: a state cannot be judged if a position or velocity is more than this many times as large as in the reference's
+/// own run, or if the extent of all particles together is more than this many times smaller.
 pub const FAIR_REACH_FACTOR: f64 = (1_u64 << 20) as f64;
 
 /// Fair: a state may deviate by this many times the step's own sensitivity to rounding errors of its inputs.

@@ -41,7 +41,7 @@ pub fn has_same_bits(one: &[f64], other: &[f64]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
 }
 
-/// Reads the vector of element `index` from an array in trace order (`x0, y0, x1, y1, ...`).
+/// Returns the vector of element `index` of an array in trace order (`x0, y0, x1, y1, ...`).
 #[inline]
 pub fn vector_at(array: &[f64], index: usize) -> Vec2 {
     Vec2::new(array[2 * index], array[2 * index + 1])

@@ -12,8 +12,8 @@ use super::{
     Level,
 };
 
-/// Returns whether a polynomial of degree at most two (as solved, small leading coefficients dropped) is provably not
-/// positive within the step. NaN and infinities never give a wrong `Some`.
+/// Returns the level of the proof that a polynomial of degree at most two (without small leading coefficients) is not
+/// positive within the step, or `None` if there is no proof. NaN and infinities never give a wrong `Some`.
 #[inline]
 pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {
     let (level, excluded) = match *coefficients {
@@ -28,7 +28,7 @@ pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {
     excluded.then_some(level)
 }
 
-/// Returns whether the line `a t + b` is excluded. Neither number may be zero.
+/// Returns whether the line `a t + b` is provably not positive within the step. Neither number may be zero.
 #[inline]
 fn is_line_excluded(a: f64, b: f64) -> bool {
     if a < 0.0 {
@@ -45,7 +45,8 @@ fn is_line_excluded(a: f64, b: f64) -> bool {
     is_line_excluded_exactly(a, b)
 }
 
-/// Performs the root finder's operations: one zero and the samples on its two sides.
+/// Returns whether the root finder would find that the line `a t + b` is not positive within the step. It performs the
+/// root finder's own operations: one zero, and a sample on each side of it.
 fn is_line_excluded_exactly(a: f64, b: f64) -> bool {
     let zero = -b / a;
     let before = evaluate(&[a, b], zero - 1.0) > 0.0;
@@ -54,8 +55,8 @@ fn is_line_excluded_exactly(a: f64, b: f64) -> bool {
     !meets && !zero.is_nan()
 }
 
-/// Returns whether the parabola `a t² + b t + c` is excluded. The number `a` must not be zero, and `b` and `c` must
-/// not both be zero.
+/// Returns whether the parabola `a t² + b t + c` is provably not positive within the step. The number `a` must not be
+/// zero, and `b` and `c` must not both be zero.
 #[inline]
 fn is_parabola_excluded(a: f64, b: f64, c: f64) -> bool {
     c < 0.0 && (has_no_real_zero(a, b, c) || is_negative_on_unit(a, b, c))

@@ -33,7 +33,8 @@ pub fn is_line_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     if open.any() { known | (open & is_line_excluded_exactly(a, b)) } else { known }
 }
 
-/// Performs the root finder's operations: one zero and the samples on its two sides.
+/// Returns the lanes in which the root finder would find that the line `a t + b` is not positive within the step. It
+/// performs the root finder's own operations: one zero, and a sample on each side of it.
 #[inline(always)]
 fn is_line_excluded_exactly<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (nothing, one) = (a.splat_like(0.0), a.splat_like(1.0));
@@ -53,8 +54,8 @@ pub fn is_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask
     if small.any() { whole | (small & is_line_never_positive(b, c)) } else { whole }
 }
 
-/// Tests parabolas whose leading coefficient is not dropped: whether they have no real zero, or are below zero with a
-/// margin.
+/// Returns the lanes in which a parabola is provably not positive within the step, because it has no real zero or is
+/// below zero with a margin. The leading coefficient must not be small.
 #[inline(always)]
 fn is_parabola_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
@@ -89,7 +90,7 @@ pub fn excludes_two_polynomials<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lane
 
 /// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
 /// provably not positive within the step, and the search among all of them would end. `ends` has the lanes in which
-/// the searches of the first and the last would end.
+/// the searches of the first and the last polynomial would end.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,

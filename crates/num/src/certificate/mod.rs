@@ -58,13 +58,13 @@ pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
     find_exclusion(polynomials).is_some()
 }
 
-/// Tests like [`excludes_unit_interval`], and returns the level that has decided.
+/// Returns the level that proves the result of [`excludes_unit_interval`], or `None` if nothing is proved.
 #[inline]
 pub fn find_exclusion(polynomials: &[Polynomial]) -> Option<Level> {
     find_list_exclusion(polynomials.iter().map(Polynomial::coefficients))
 }
 
-/// Tests like [`find_exclusion`], for lists of coefficients without small leading ones.
+/// Returns the result of [`find_exclusion`] for lists of coefficients without small leading ones.
 #[inline]
 pub fn find_list_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
@@ -93,8 +93,8 @@ fn confirm_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, best: O
         .then_some(Level::Bernstein)
 }
 
-/// Returns whether the root finder rejects the polynomial (a leading zero in the non-dropping build, or `c z^m`) and
-/// its only sample, at 0, is not positive.
+/// Returns whether the root finder rejects the polynomial (a leading zero, which the non-dropping build of
+/// root-finder.md 15.1 keeps, or `c z^m`) and its only sample, at 0, is not positive.
 #[inline]
 fn is_rejected_and_not_positive(coefficients: &[f64]) -> bool {
     coefficients[coefficients.len() - 1] <= 0.0

@@ -159,7 +159,8 @@ fn decide_without_errors(problem: &Problem, search: &SearchOutcome, units: f64) 
     }
 }
 
-/// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the known results.
+/// Returns the decision by exact arithmetic. `upper_hits` and `lower_misses` are whether subdivision has proved that
+/// the upper choice hits, and that the lower one misses.
 fn decide_by_integers(
     upper: &Problem,
     lower: &Problem,
@@ -177,7 +178,7 @@ fn decide_by_integers(
     borderline_decision(Some(first), Level::Exact)
 }
 
-/// Decides like [`find_exact_first_time`], for a problem's coefficients.
+/// Returns the result of [`find_exact_first_time`] for a problem's coefficients.
 fn decide_exactly(problem: &Problem) -> ExactAnswer {
     let lists = problem.coefficients_highest_first();
     let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];

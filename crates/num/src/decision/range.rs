@@ -6,7 +6,7 @@
 //! Algorithms*, section 3.1).
 use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
 
-/// The end of every coefficient's interval.
+/// One end of every coefficient's interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum IntervalEnd {
     /// The largest values.
@@ -95,7 +95,7 @@ impl Problem {
     }
 
     /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step, and the number of
-    /// further units of the bounds for which the result stays right. An empty problem is excluded.
+    /// further units of the bounds for which the result stays right. A problem without polynomials never hits.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -183,8 +183,8 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl ExactPolynomial {
-    /// Tries level 0. The signs exclude a hit if no coefficient is positive, or if the positive terms cannot
-    /// compensate a negative constant.
+    /// Returns the slack of a proof by level 0, or `None` if the signs do not exclude a hit. They exclude a hit if no
+    /// coefficient is positive, or if the positive terms cannot compensate a negative constant.
     #[inline]
     fn try_signs(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
@@ -198,7 +198,7 @@ impl ExactPolynomial {
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
-    /// Tries level 1. All Bernstein coefficients must be negative.
+    /// Returns the slack of a proof by level 1, or `None` if not all Bernstein coefficients are negative.
     #[inline]
     fn try_bernstein(&self) -> Option<f64> {
         // The polynomial is positive at 0, so no search is needed.

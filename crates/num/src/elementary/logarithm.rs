@@ -27,10 +27,10 @@ const NEAR_ONE_COEFFICIENTS: [f64; 11] = [
 ];
 /// The bits of 0.6875, where the table begins.
 const TABLE_START_BITS: u64 = 0x3fe6_0000_0000_0000;
-/// The bits of `1 - 2^-4`, and the number of the following numbers that are close to one.
+/// The bits of `1 - 2^-4`, and the number of doubles from there on that are close to one.
 const NEAR_ONE_START_BITS: u64 = 0x3fee_0000_0000_0000;
 const NEAR_ONE_BIT_COUNT: u64 = 0x0003_0900_0000_0000;
-/// The number 2^27, for half of a number's bits.
+/// The number 2^27, with which a number is split into two halves of its bits.
 const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 
 /// Returns the natural logarithm. The result is `-inf` at zero and NaN below.
@@ -66,8 +66,7 @@ pub fn ln(x: f64) -> f64 {
     multiply_add(r * square, inner, low) + sum
 }
 
-/// Returns the logarithm of a number close to one, with the first two terms in double precision arithmetic of two
-/// parts.
+/// Returns the logarithm of a number close to one, with the first two terms of the series in two parts each.
 fn ln_near_one(x: f64) -> f64 {
     if x == 1.0 {
         return 0.0;

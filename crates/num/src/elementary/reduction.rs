@@ -31,7 +31,7 @@ const HALF_PI_HIGH_LOW: [f64; 2] = [HALF_PI_PARTS[0], f64::from_bits(0xbe4d_de97
 /// The factor 2^27 + 1 that splits a number into two halves of its bits.
 const SPLIT_FACTOR: f64 = 134_217_729.0;
 
-/// Returns a power of two.
+/// Returns 2 to the power `exponent`.
 const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
@@ -88,9 +88,9 @@ struct Quarters {
     rest: f64,
 }
 
-/// Returns the quarters of half of an angle's digits, times 2^-600.
+/// Returns the quarters of a turn in `half`, which is one half of an angle's bits, times 2^-600.
 fn count_quarters(half: f64) -> Quarters {
-    // Digits whose product is a multiple of a turn are left out.
+    // Digits of 2/π whose product with the angle is a multiple of a turn are left out.
     let exponent = (half.to_bits() >> 52 & 0x7ff) as i32;
     let from = ((exponent - 450) / 24).max(0);
     let mut scale = power_of_two(576 - 24 * from);

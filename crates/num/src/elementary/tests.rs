@@ -22,8 +22,8 @@ fn the_rotation_by_94_degrees_has_the_bits_of_the_specification() {
     assert_eq!(sin(angle).to_bits(), 0x3FEF_EC0B_6FC0_5F20);
 }
 
-/// On machines with that library and with fused operations, the bits must be the same. `FOSSSIM_ARGUMENTS` sets how
-/// many arguments of each kind are tried.
+/// On machines with the GNU C library and with fused operations, the bits must be the same. `FOSSSIM_ARGUMENTS` sets
+/// how many arguments of each kind are tried.
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 #[test]
 fn the_bits_are_those_of_the_gnu_c_library() {

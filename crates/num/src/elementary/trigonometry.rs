@@ -73,7 +73,8 @@ fn sine_at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u
     if quarter & 2 == 0 { value } else { -value }
 }
 
-/// Returns the nearest angle of the table, whose index is in the sum's lowest bits, and the difference from it.
+/// Returns the table's entries for the angle nearest to `modulus`, and the difference from this angle. The index of the
+/// entries is in the sum's lowest bits.
 fn nearest_angle(modulus: f64) -> ([f64; 4], f64) {
     let sum = ROUNDING_SHIFT + modulus;
     let row = 4 * (sum.to_bits() as u32) as usize;

@@ -41,8 +41,8 @@ fn start<const N: usize>(moduli: &Coefficients) -> f64 {
     mean
 }
 
-/// Divides by ten while the polynomial stays positive. With finite coefficients this ends after about 600 rounds at the
-/// latest, at zero.
+/// Divides `x` by ten while the polynomial stays positive, and returns the last `x`. With finite coefficients this ends
+/// after about 600 rounds at the latest, at zero.
 #[inline]
 fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) -> f64 {
     loop {
@@ -59,8 +59,8 @@ fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) 
     }
 }
 
-/// Runs Newton's iteration until a step changes less than half a percent. With `x = 0` the ratio is NaN and there is no
-/// step.
+/// Returns the result of Newton's iteration, which ends when a step changes `x` by less than half a percent. With `x =
+/// 0` the ratio is NaN and there is no step.
 #[inline]
 fn newton<const N: usize>(moduli: &Coefficients, mut x: f64, all_steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     let mut step = x;

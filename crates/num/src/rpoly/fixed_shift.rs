@@ -37,15 +37,15 @@ impl Convergence {
         self.previous_change = change;
     }
 
-    /// Tightens the measure. After a failed iteration, convergence must be clearer before the next attempt.
+    /// Tightens the threshold. After a failed iteration, convergence must be clearer before the next attempt.
     #[inline(always)]
     fn tighten(&mut self) {
         self.threshold *= 0.25;
     }
 }
 
-/// Iterates with the fixed factor `z² + u z + v` until an iteration started from the estimates succeeds, at most
-/// `limit` steps. All steps, including those of the iterations, are added to `steps`.
+/// Iterates with the fixed factor `z² + u z + v` until a variable-shift iteration from the estimates succeeds. Returns
+/// `None` after `limit` steps. All steps, including those of the iterations, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
     mut k: Coefficients,
@@ -83,7 +83,7 @@ pub(super) fn run<const N: usize>(
     None
 }
 
-/// The state of the fixed-shift stage when a sequence passes.
+/// The state of the fixed-shift stage when a sequence passes its convergence test.
 struct Attempt<'a> {
     polynomial: &'a Coefficients,
     k: Coefficients,
@@ -101,7 +101,8 @@ enum Stage {
 }
 
 impl Attempt<'_> {
-    /// Chains the variable-shift iterations; each failure tightens its threshold.
+    /// Tries the variable-shift iterations one after the other. Each failure tightens the threshold of its sequence.
+    /// Returns `None` if all of them fail.
     #[inline(never)]
     fn run<const N: usize>(
         &self,

@@ -17,7 +17,7 @@ pub(super) enum Outcome {
     Failed,
 }
 
-/// Iterates from `s`. On failure, `k` is changed.
+/// Iterates from `s`. Unless a zero is found, `k` is changed.
 #[inline]
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
@@ -44,7 +44,7 @@ pub(super) fn run<const N: usize>(
         if steps > MAX_STEPS {
             return Outcome::Failed;
         }
-        // Both comparisons are false for a NaN, which raises the flag.
+        // Both comparisons are false for a NaN, so the iteration counts as stalled.
         let advances = t.abs() > 0.001 * (s - t).abs() || size < previous_size;
         if steps >= 2 && !advances {
             return Outcome::Cluster(s);

@@ -118,7 +118,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
     Ok(zeros)
 }
 
-/// Finds the zeros of a line or a parabola, which end the recursion.
+/// Adds the zeros of a line or a parabola, which are the last ones.
 #[inline]
 fn solve_closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
     match *coefficients {
@@ -159,7 +159,8 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
     }
 }
 
-/// Performs one search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
+/// Finds one or two zeros by scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and
+/// 6). Returns `None` if all shifts fail.
 #[inline(never)]
 fn find<const N: usize>(
     polynomial: &mut Coefficients,

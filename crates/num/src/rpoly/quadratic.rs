@@ -1,7 +1,7 @@
 //! Divides by quadratic factors, and finds their zeros (root-finder.md 4 and 5).
 use super::{Coefficients, Zero};
 
-/// Divides a polynomial of degree `M` by `z² + u z + v`. The last two entries are the remainder.
+/// Returns the quotient of a polynomial of degree `M` by `z² + u z + v`, followed by the two entries of the remainder.
 #[inline(always)]
 pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coefficients {
     let mut g = Coefficients::default();

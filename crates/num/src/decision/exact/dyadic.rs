@@ -19,7 +19,8 @@ impl DyadicNumber {
         Self { numerator: BigInt::from(1), exponent: 0 }
     }
 
-    /// Returns the numerator over `2^exponent`, for an exponent that is at least the fraction's own.
+    /// Returns the numerator of the number as a fraction with the denominator `2^exponent`. The exponent must be at
+    /// least the number's own.
     fn numerator_over(&self, exponent: u64) -> BigInt {
         &self.numerator << (exponent - self.exponent)
     }
@@ -35,7 +36,7 @@ impl DyadicNumber {
         self.numerator == BigInt::from(1) << self.exponent
     }
 
-    /// Returns the largest double that is not above, and the smallest that is not below.
+    /// Returns the largest double that is not above the number, and the smallest that is not below it.
     pub(super) fn enclosure(&self) -> [f64; 2] {
         let bits = self.numerator.bits();
         let dropped = bits.saturating_sub(53);

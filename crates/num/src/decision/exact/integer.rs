@@ -67,12 +67,12 @@ impl IntegerPolynomial {
         self.0.len().saturating_sub(1)
     }
 
-    /// Returns whether no coefficient is positive.
+    /// Returns whether no coefficient is positive, so that the polynomial is not positive at any time after 0.
     pub(super) fn is_never_positive_after_zero(&self) -> bool {
         self.0.iter().all(|value| sign(value) <= 0)
     }
 
-    /// Returns whether no coefficient is negative, and one is positive.
+    /// Returns whether no coefficient is negative and one is positive, so that the polynomial is positive after 0.
     pub(super) fn is_always_positive_after_zero(&self) -> bool {
         !self.0.is_empty() && self.0.iter().all(|value| sign(value) >= 0)
     }
@@ -147,7 +147,7 @@ impl IntegerPolynomial {
         Self(self.0.iter().map(|value| value / &content).collect())
     }
 
-    /// Returns the remainder of a positive multiple of `self`. The divisor must not be zero.
+    /// Returns the remainder of a nonzero multiple of `self`. The divisor must not be zero.
     fn pseudo_remainder(&self, divisor: &Self) -> Self {
         let mut rest = self.clone();
         let leading = &divisor.0[divisor.degree()];
@@ -242,7 +242,7 @@ fn multiply_modulo_prime(a: u64, b: u64) -> u64 {
     u64::try_from(u128::from(a) * u128::from(b) % u128::from(MODULUS)).unwrap_or(0)
 }
 
-/// Computes the remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`MODULUS`].
+/// Replaces `a` by its remainder after division by `b` (last entry not 0), up to a factor and modulo [`MODULUS`].
 fn reduce_polynomial(a: &mut Vec<u64>, b: &[u64]) {
     while a.len() >= b.len() {
         let (top, leading, shift) = (a[a.len() - 1], b[b.len() - 1], a.len() - b.len());

@@ -104,7 +104,7 @@ enum PendingPart {
     Point(DyadicNumber),
 }
 
-/// Counts the sign changes among the coefficients of `(1+t)^n P(1/(1+t))`.
+/// Returns the number of sign changes among the coefficients of `(1+t)^n P(1/(1+t))`.
 fn count_variations(polynomial: &IntegerPolynomial) -> usize {
     let reversed = IntegerPolynomial::new(polynomial.coefficients().iter().rev().cloned().collect()).shift_by_one();
     let signs = reversed.coefficients().iter().map(BigInt::sign).filter(|&sign| sign != Sign::NoSign);

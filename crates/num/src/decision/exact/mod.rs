@@ -15,7 +15,7 @@ use dyadic::DyadicNumber;
 use integer::IntegerPolynomial;
 use isolate::{Root, roots_within_step};
 
-/// The answer to whether and when `tau` is reached, for coefficients without errors.
+/// The answer to whether and when all polynomials become positive (at the time `tau`), for coefficients without errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExactAnswer {
     /// The time `tau` is greater than 1.
