@@ -3,8 +3,8 @@
 //! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum.
 //! `what` is `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's
 //! own trace), `half` and `third` (the same trace with every coefficient times 0.5 or divided by 3, by both books),
-//! `rounded` (with a rounding more in every third coefficient), `trace` (each scene is followed by the file of a trace,
-//! judged by both books).
+//! `rounded` (with an additional rounding error in every third coefficient), `trace` (each scene is followed by the
+//! file of a trace, judged by both books).
 //!
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
 //! changes, and compares them with the counts in `instructions.txt`; with `store` the counts are written there.
@@ -21,7 +21,7 @@ use fosssim_model::{
 };
 use std::{fmt::Write as _, hint::black_box, process::Command, time::Instant};
 
-/// Scenes whose instructions are counted, of those that come with the program.
+/// The built-in scenes whose instructions are counted.
 const COUNTED: [&str; 3] = [
     "HolisticTests/crowd-of-twenty-balls",
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
@@ -143,7 +143,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     )
 }
 
-/// Returns the trace with coefficients computed from each coefficient and its number in its record.
+/// Returns the trace with new coefficients, computed from each coefficient and its index in the record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::for_scene(scene);
     let (mut reader, mut writer) = (Reader::from_slice(trace, layout), Writer::new(Vec::new(), layout));
@@ -157,7 +157,8 @@ fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) ->
     writer.finish().expect("memory").0
 }
 
-/// Prints the instructions of single tasks, compared with the stored counts.
+/// Prints the number of instructions of each task, compared with the stored count. With `store`, replaces the stored
+/// counts.
 fn instructions(store: bool) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/t2m2");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
@@ -299,7 +300,7 @@ fn growth() {
         let scene = original::read(heap(particles).as_bytes()).expect("a scene").scene;
         let edges = scene.edges.len();
         let pairs = particles * (particles - 1) / 2 + (particles - 2) * edges + particles * scene.half_planes.len();
-        // The trace is judged while it is recorded, so it is never completely in memory.
+        // The trace is recorded into a file and judged from it, so it is never completely in memory.
         let per_pair = |time: f64| time * 1e6 / pairs as f64 / f64::from(scene.step_count());
         let rounds = if particles < 1000 { 5 } else { 2 };
         let recorded = least(rounds, || _ = record(&scene, std::io::sink()));

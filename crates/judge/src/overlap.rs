@@ -30,7 +30,7 @@ pub struct OverlapCheck {
 }
 
 impl OverlapCheck {
-    /// Examines a pair in a step that starts from `before`, or returns `None` if the scene never checks the pair.
+    /// Returns the check of a pair in a step that starts from `before`, or `None` if the step does not check the pair.
     ///
     /// # Errors
     /// Fails with a [`StepError`] if the step has no result.
@@ -108,7 +108,7 @@ mod tests {
     use crate::samples::scene;
     use fosssim_model::sim::PairKind;
 
-    /// Returns a ball above an edge that falls by `way` within a step.
+    /// Returns the check of an edge and a ball above it, which falls by `way` within a step.
     fn study(way: f64) -> OverlapCheck {
         let scene = scene(&format!(
             r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/><collision type="simple" COR="1"/>

@@ -105,7 +105,7 @@ fn compare(
     Ok(outcome)
 }
 
-/// Returns an impulse of an undamaged recording.
+/// Converts a logged impulse of an undamaged recording. Returns `None` if it does not name a pair.
 fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }

@@ -116,7 +116,7 @@ pub(super) fn judge_with_memory(
     replay.judge(options, progress)
 }
 
-/// The selection of the compared parts of a step.
+/// The data that determine which parts of a step are compared.
 #[derive(Debug, Clone, Copy)]
 struct StepRules<'a> {
     layout: Layout,
@@ -216,7 +216,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.outcome.parity.endless_step = self.outcome.parity.endless_step.or(error);
     }
 
-    /// Computes the verdicts.
+    /// Returns the outcome with its verdicts.
     fn conclude(mut self) -> Outcome {
         self.outcome.fair = self.judging.take().map(|judging| Box::new(judging.conclude(&self.outcome)));
         self.outcome.conclude();
@@ -409,7 +409,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mid = self.step_rules.layout.has_polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
-            // If the scene itself has no result, no trace is right.
+            // If the reference's own run has no result either, the fair rules cannot judge the step.
             has_judged &= reach.advance_to(step);
             slot.fair_judgement = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
@@ -446,7 +446,7 @@ fn stop_beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
 }
 
 impl Batch {
-    /// Returns whether a step of the batch is still to be judged.
+    /// Returns whether a step of the batch must still be judged.
     fn has_waiting_step(&mut self) -> bool {
         self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_judged || !slot.is_fairly_judged)
     }

@@ -128,7 +128,7 @@ pub struct Study {
 }
 
 impl Study {
-    /// Examines a pair with the given motion.
+    /// Returns the study of a pair with the given motion.
     ///
     /// # Errors
     /// Fails with [`EndlessSearch`] if the original hangs.
@@ -168,7 +168,7 @@ impl Study {
 /// Returns the course's approach polynomial with the right t^3 coefficient, if the two differ.
 fn right_approach(polynomials: &[Polynomial], expected: &formulas::ExpectedPolynomials) -> Option<Polynomial> {
     let (course, right) = (expected.polynomial(3), expected.other_form(3)?);
-    // The power t^3 of a quintic.
+    // The index of the t^3 coefficient of a quintic.
     let cubic = MAX_COEFFICIENTS - 4;
     if course[cubic].value == right[cubic].value {
         return None;

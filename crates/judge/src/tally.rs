@@ -89,7 +89,7 @@ pub(super) struct TallyBuffers {
 }
 
 impl TallyBuffers {
-    /// Creates an empty tally for steps of this scene.
+    /// Creates empty buffers for steps of this scene.
     pub(super) fn new(scene: &Scene) -> Self {
         Self { order: pairs(scene), ..Self::default() }
     }
@@ -456,8 +456,8 @@ mod tests {
         assert!(!are_equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
-    /// A polynomial that clearly has a factor is accepted, and nearly every polynomial that is accepted with a factor
-    /// has it clearly.
+    /// Every polynomial for which the quick comparison finds a factor is accepted, and it finds the factor of many
+    /// polynomials.
     #[test]
     fn polynomials_with_a_clear_factor_are_accepted() {
         let mut seed = 1_u64;

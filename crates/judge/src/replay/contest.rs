@@ -5,7 +5,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation, State, SweepOrder},
 };
 
-/// Follows the order from step to step; does nothing for other scenes.
+/// The order of bodies, which is followed from step to step. For scenes that are no contests, it stays empty.
 pub(super) struct ContestOrder {
     simulation: Simulation,
     order: SweepOrder,

@@ -89,7 +89,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     }
 }
 
-/// States without a next state are wrong results: the rest of the trace is read and judged by the fair rules.
+/// A state without a next state is a wrong result, but the fair rules judge the rest of the trace.
 #[test]
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
     let scene = crate::samples::scene(crate::samples::ZONES_SCENE);

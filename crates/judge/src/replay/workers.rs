@@ -53,7 +53,8 @@ impl<'a> Workers<'a> {
         }
     }
 
-    /// Returns whether other threads would not make judging faster yet.
+    /// Returns whether judging began so recently that threads would not pay off. The result is also `true` without a
+    /// clock.
     pub(super) fn began_shortly_ago(&self) -> bool {
         self.begin.is_none_or(|begin| begin.elapsed() < TIME_WITHOUT_THREADS)
     }

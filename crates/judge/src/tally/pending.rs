@@ -76,7 +76,7 @@ impl PendingFindings {
         }
     }
 
-    /// Delivers all findings, if the lists have the same length.
+    /// Adds all findings to `result`. The two lists must have the same length.
     pub(crate) fn deliver(&mut self, result: &mut StepResult) {
         for &(kind, count) in &self.runs {
             result.remarks.push(Remark::Polynomials(kind, count));
@@ -86,7 +86,7 @@ impl PendingFindings {
     }
 }
 
-/// Returns the coefficient that a person would call wrong.
+/// Returns the finding about the coefficient that a person would call wrong.
 fn describe_wrong_coefficient(
     place: PolynomialPlace,
     rescaled: RescaledCoefficient,

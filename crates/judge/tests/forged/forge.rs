@@ -19,7 +19,7 @@ use fosssim_num::{bounded::BoundedValue, polynomial::Polynomial};
 /// Products of coefficients of this size overflow.
 const OVERFLOWS: f64 = 1e100;
 
-/// With up to this number of steps, one polynomial in ten may be a single one.
+/// The number of steps up to which a single polynomial may be a tenth of its kind, so that its factor is no outlier.
 const FEW: usize = 40;
 
 /// A generator of numbers that look random and are the same in every run.
@@ -97,7 +97,7 @@ fn scaled(list: &[f64], factor: f64) -> Polynomial {
 }
 
 impl Stage {
-    /// Returns `None` if the scene logs no polynomials, or the reference has no result.
+    /// Returns the stage of a scene, or `None` if the scene logs no polynomials or the reference has no result.
     pub fn of(name: &str, scene: Scene) -> Option<Self> {
         let frames = run(&scene, &mut ())?;
         let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
@@ -201,7 +201,7 @@ impl Base {
     }
 }
 
-/// Which polynomials are changed.
+/// The polynomials that are changed.
 #[derive(Debug, Clone, Copy)]
 enum Target {
     One {
@@ -265,7 +265,7 @@ impl Target {
     }
 }
 
-/// How a polynomial is changed.
+/// The change of a polynomial.
 #[derive(Debug, Clone, Copy)]
 enum Change {
     Empty,
@@ -453,7 +453,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     if largest > OVERFLOWS {
         return None;
     }
-    // A program that misses a collision may end with two balls at the same place.
+    // A program that misses a collision may end with two balls at the same position.
     let beyond = counts.get(FindingKind::Position).min(lost);
     let is_explained = lost + gone + beyond == counts.total();
     let is_documented = judged.refusal.is_none() && is_explained;

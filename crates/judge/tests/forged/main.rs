@@ -1,4 +1,4 @@
-//! A trace that the fair rules accept has a valid reason, and programs with factors are accepted.
+//! Tests that the fair rules accept a trace only for a valid reason, and that they accept programs with factors.
 #![forbid(unsafe_code)]
 mod forge;
 

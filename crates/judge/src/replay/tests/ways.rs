@@ -81,7 +81,7 @@ fn both_ways_say_the_same_to_the_last_field() {
                 own.iter().map(|c| if index == 0 { f64::NAN } else { c * 1.25 }).collect()
             })
         },
-        // This changes the rounding errors of one polynomial, or of all.
+        // These change coefficients by rounding errors, in all frames or in two.
         |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 1.0))),
         |frames| frames[2..4].iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 40.0))),
         // These factors make the library drop leading coefficients, in some polynomials or in all.
