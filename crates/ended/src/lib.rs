@@ -1,4 +1,4 @@
-//! Describes how the run of a program ended. The sandbox creates it, grades store it, and reports describe it.
+//! The result of a program's run. The sandbox creates results, grades store them, and reports describe them.
 //!
 //! ```
 //! use fosssim_ended::RunEnd;

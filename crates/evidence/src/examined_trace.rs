@@ -62,8 +62,8 @@ impl ExaminedTrace<'_> {
         explain_kept_trace(self.scene, &self.trace)
     }
 
-    /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if that can be
-    /// read again, otherwise the kept part.
+    /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if `again` reads
+    /// the trace once more, otherwise the kept part.
     pub fn gather_evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));
         let gathered = |trace: &mut dyn Read| gather(self.scene, trace, &self.rulings, fair, &focus, budget);

@@ -104,8 +104,8 @@ pub struct Evidence {
     pub inspected: Vec<InspectedStep>,
 }
 
-/// Reads a trace. `rulings` are the judge's rulings in the order of the steps; `fair` selects the rule book that
-/// decides; `focus` names the places of findings, the most important first.
+/// Reads a trace and returns its evidence. `rulings` are the judge's rulings in the order of the steps; `fair` selects
+/// the rule book that decides; `focus` names the places of findings, the most important first.
 ///
 /// If a trace cannot be read to its end, the evidence covers the readable part.
 pub fn gather(
@@ -161,7 +161,7 @@ fn find_wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::InPass), focus.pair?))).collect()
 }
 
-/// Collects the evidence, with the reference's own run and its steps from the trace's states.
+/// The evidence so far, with the reference's own run and its steps from the trace's states.
 struct EvidenceBuilder<'a> {
     scene: &'a Scene,
     /// The reference's own run.
@@ -290,7 +290,7 @@ fn measure_distances(one: &State, other: &State) -> [f64; 2] {
     [max_distance(&one.positions, &other.positions), max_distance(&one.velocities, &other.velocities)]
 }
 
-/// Returns the largest distance between the numbers of two lists; NaN if one of them is NaN.
+/// Returns the largest distance between corresponding numbers of two lists; NaN if a number is NaN.
 fn max_distance(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, max_with_nan)
 }
@@ -324,6 +324,7 @@ struct PassCount<'a> {
 
 impl PassCount<'_> {
     /// Returns the number of passes that log `logged` polynomials. All passes of a step log the same number.
+    /// Returns `None` if `logged` is not a whole number of passes.
     fn count_passes(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {

@@ -37,7 +37,7 @@ pub fn inspect(
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();
     let mut step = watch.finish();
-    // An error after the pair's calls does not matter here.
+    // The inspector also adds wrong calls of other pairs.
     step.calls.retain(|call| call.pair == pair);
     InspectedPair { step, end: simulation.state().clone(), error: failed }
 }

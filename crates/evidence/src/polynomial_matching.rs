@@ -17,8 +17,8 @@ const MISMATCH_COST: u32 = 3;
 /// mark is not a verdict; with a larger value, small differences are not marked.
 const MARKED_DEVIATION: f64 = 1e-9;
 
-/// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong, or `None` if
-/// the lists are too long to be compared.
+/// Returns, for each expected polynomial, the index of its right or wrong counterpart in the trace's list, or `None` if
+/// it is missing there. The whole result is `None` if the lists are too long to be compared.
 pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let is_match = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
@@ -68,7 +68,7 @@ fn place_cost(places: usize) -> u32 {
     u32::try_from(places).unwrap_or(u32::MAX / GAP_COST)
 }
 
-/// Returns whether one polynomial is visibly not a positive multiple of the other.
+/// Returns whether one polynomial visibly differs from every positive multiple of the other.
 pub(crate) fn are_different(own: &[f64], right: &[f64]) -> bool {
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (most, scale) = (largest(own), largest(right));

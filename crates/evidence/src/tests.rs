@@ -105,7 +105,8 @@ fn a_cut_trace_shows_what_is_there() {
     assert_eq!((nothing.submission.records, nothing.steps.len()), (0, 0));
 }
 
-/// The end of a hybrid step starts from the trace's own mid record, and may be right when that is wrong.
+/// The second part of a hybrid step starts from the trace's own mid record, and may be right if the mid record is
+/// wrong.
 #[test]
 fn a_hybrid_step_whose_impulses_are_wrong_has_a_residual() {
     let scene = asset("ImpulsesTests/off-centre-on-turning-edge.xml");

@@ -46,7 +46,7 @@ impl Window {
 /// Consecutive records of a motion, starting with the end record of a window's first step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
-    /// The positions and velocities of each record in trace order, 2N each.
+    /// The positions and velocities of each record in trace order, with two components per particle.
     pub values: Vec<f64>,
     /// The number of records. It is smaller than the window's if the motion ends early.
     pub records: usize,

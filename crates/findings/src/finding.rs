@@ -263,8 +263,8 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::number_serde")]
         actual: f64,
     },
-    /// A state cannot be judged, because it contains NaN or is far larger than every state that the scene leads to
-    /// (fair rules).
+    /// A state cannot be judged, because it is not finite, or far from every state that the scene leads to (fair
+    /// rules).
     BeyondReach {
         /// The index of the particle.
         particle: usize,

@@ -150,7 +150,7 @@ const fn pass_noun(passes: usize) -> &'static str {
     if passes == 1 { "pass" } else { "passes" }
 }
 
-/// Writes two vectors and their distance, the wrong vector first. The vectors have as many digits as are needed to
+/// The text of two vectors and their distance, the wrong vector first. The vectors have as many digits as are needed to
 /// distinguish them.
 struct VectorDifference {
     expected: [f64; 2],
@@ -176,7 +176,7 @@ impl Display for VectorDifference {
     }
 }
 
-/// Cuts a value after a number of decimal places. A negative number means places before the decimal point.
+/// Rounds a value to a number of decimal places. A negative number means places before the decimal point.
 fn truncate_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     // Seventeen digits identify a double, so more are not needed.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
@@ -188,7 +188,7 @@ fn truncate_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     text.parse().unwrap_or(value)
 }
 
-/// Writes a number as the shortest text that reads back as the same number.
+/// A number, written as the shortest text that reads back as the same number.
 struct ExactNumber(f64);
 
 impl Display for ExactNumber {
@@ -198,7 +198,7 @@ impl Display for ExactNumber {
     }
 }
 
-/// Writes a point or a vector, such as `(0.5, 1)`.
+/// The text of a point or a vector, such as `(0.5, 1)`.
 struct VectorText([f64; 2]);
 
 impl Display for VectorText {
@@ -239,7 +239,7 @@ impl Display for FindingKind {
     }
 }
 
-/// Writes the reason why a step has no result.
+/// The text of the reason why a step has no result.
 #[derive(Debug, Clone, Copy)]
 pub struct MissingResult(pub StepError);
 
@@ -262,7 +262,7 @@ impl Display for MissingResult {
     }
 }
 
-/// Writes a pair, such as `particle 3 and edge 1`.
+/// The text of a pair, such as `particle 3 and edge 1`.
 #[derive(Debug, Clone, Copy)]
 pub struct PairText(pub Pair);
 
@@ -280,7 +280,7 @@ fn write_pair(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second
     }
 }
 
-/// Writes a pair as a trace names it. The pair may not exist in the scene.
+/// The text of a pair as a trace names it. The pair may not exist in the scene.
 struct LoggedPair<'a>(&'a LoggedImpulse);
 
 impl Display for LoggedPair<'_> {
@@ -293,7 +293,7 @@ impl Display for LoggedPair<'_> {
     }
 }
 
-/// Writes a detection pass, such as `impulse round 2`.
+/// The text of a detection pass, such as `detection of impulse round 2`.
 #[derive(Debug, Clone, Copy)]
 pub struct PassText(pub Pass);
 
@@ -308,7 +308,7 @@ impl Display for PassText {
     }
 }
 
-/// Names the coefficient of a power of t, such as `coefficient of t^3` or `constant coefficient`.
+/// The text of the coefficient of a power of t, such as `coefficient of t^3` or `constant coefficient`.
 #[derive(Debug, Clone, Copy)]
 pub struct PowerText(pub usize);
 

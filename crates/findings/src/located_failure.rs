@@ -59,8 +59,8 @@ pub struct LocatedFailure {
 }
 
 impl FailureKind {
-    /// Returns how a program failed that ended in this way; `None` if it ended normally, or if the kind of failure is
-    /// unknown.
+    /// Returns the kind of failure of a program that ended in this way; `None` if it ended normally, or if no kind
+    /// fits.
     pub const fn from_end(end: &RunEnd) -> Option<Self> {
         match end {
             RunEnd::Signalled(_) => Some(Self::Crash),

@@ -41,7 +41,7 @@ impl FileKind {
     }
 }
 
-/// Describes a file that begins with `start`, for messages.
+/// Returns a description of a file that begins with `start`, for messages.
 pub fn describe(start: &[u8]) -> String {
     let kinds_by_start: [(&[u8], &str); 17] = [
         (b"MZ", "a program for Windows"),

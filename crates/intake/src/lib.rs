@@ -169,6 +169,7 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
 
 /// Returns the number of entries that a zip archive announces. It is in the archive's end record (APPNOTE 4.3.16), or
 /// in the end record for large archives (4.3.14) if there is one.
+/// Returns `None` if the archive has no end record.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     /// The size of both records, the pointer between them, and the longest comment that may follow them.
     const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;
@@ -253,7 +254,7 @@ impl ArchiveReader<'_> {
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(READ_OVERHEAD_BYTES * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
-        // The library would read all of this header, which contains the name of the next file.
+        // The name of the next file, from a header that the library would read whatever its length.
         let mut long_name = None;
         for entry in archive.entries().map_err(describe_damage)?.raw(true) {
             let mut entry = entry.map_err(describe_damage)?;

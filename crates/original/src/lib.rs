@@ -99,7 +99,7 @@ pub trait Services {
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
 }
 
-/// Draws the state after each step.
+/// A drawer of pictures that show the state after each step.
 pub trait Pictures {
     /// Draws the state after a step, counted from 1; positions are in the order of
     /// [`State`](fosssim_model::sim::State).

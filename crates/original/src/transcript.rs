@@ -39,7 +39,7 @@ pub(crate) enum Task<'a> {
     Grade(&'a [u8]),
 }
 
-/// Writes the original's standard output to a stream, event by event.
+/// A writer of the original's standard output, event by event.
 ///
 /// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::print_end`]. For recording and plain
 /// runs, call `observe_begin`, `observe_step_begin` and [`Transcript::end_step`] per step, then

@@ -58,8 +58,8 @@ const fn value_kind(flag: &Flag) -> &'static str {
     if flag.boolean { "boolean" } else { "string" }
 }
 
-/// Breaks a text at spaces, commas and bars so that lines have at most [`WIDTH`] columns. The first line has `indent`
-/// leading spaces, the others `further` more. Words that do not fit are split at the end of the line.
+/// Returns a text with breaks at spaces, commas and bars, so that lines have at most [`WIDTH`] columns. The first line
+/// has `indent` leading spaces, the others `further` more. Words that do not fit are split at the end of the line.
 fn wrap(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
     let mut lines = Vec::new();
     let mut indent = indent;

@@ -5,7 +5,8 @@
 //! as long as the program stays wrong for its [`WrongReason`]. The order of attempts is fixed, and the result is
 //! 1-minimal: no single attempt makes it smaller (delta debugging, Zeller and Hildebrandt 2002).
 //!
-//! It runs no program and reads no clock: its caller does, and decides with each answer whether to continue.
+//! This crate runs no program and reads no clock. Its caller runs the program, and decides after each run whether to
+//! continue.
 //!
 //! ```
 //! use fosssim_ended::RunEnd;

@@ -10,7 +10,7 @@ use fosssim_mistakes::diagnose::{self, is_named_in, reproduces};
 use fosssim_model::{scene::Scene, sim::PairKind};
 use fosssim_student::find;
 
-/// The minimum difference that counts as plain. It exceeds the round-off of any program.
+/// The minimum difference that counts as clear. It exceeds the round-off of any program.
 const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 
 /// The trace and the end of a program's run on a scene.
@@ -56,9 +56,9 @@ impl WrongReason {
         likely.or_else(|| is_clear_finding(detail).then_some(fault))
     }
 
-    /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
-    /// is the named mistake, and not by a decision that round-off may change. With `is_only_reason`, the reason must be
-    /// the first one that the scene shows, without other mistakes that have the same effect.
+    /// Returns whether a program is clearly wrong on a scene for this reason. A finding without a likely mistake must
+    /// exceed round-off, and decisions must not depend on round-off. With `is_only_reason`, the reason must be the
+    /// first one that the scene shows, without other mistakes that have the same effect.
     pub fn is_reproduced(&self, scene: &Scene, observation: &Observation, is_only_reason: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, observation) else { return false };
         match (self, detail) {
@@ -102,14 +102,14 @@ fn find_reason(scene: &Scene, observation: &Observation) -> Option<(WrongReason,
     }
     let fair = outcome.fair.filter(|fair| fair.verdict == FairVerdict::Rejected)?;
     let first = fair.findings.first_divergence?;
-    // After a plain fault, decisions about the program's own positions may be borderline, while the reference's
+    // After a clear fault, decisions about the program's own positions may be borderline, while the reference's
     // decisions are certain.
     let has_margin = fair.borderline == 0 || (is_clear_finding(first.detail) && is_clear(scene));
     let finding = WrongReason::Finding(first.kind(), first.detail.pair().map(|pair| pair.kind));
     has_margin.then_some((finding, Some(first.detail)))
 }
 
-/// Returns whether a finding is about more than round-off. A NaN is plain as well.
+/// Returns whether a finding is about more than round-off. This includes NaN.
 const fn is_clear_finding(detail: FindingDetail) -> bool {
     use FindingDetail::{Coefficient, Position, Velocity, WrongNormal};
     match detail {

@@ -24,8 +24,9 @@ pub struct SmallScene {
 /// reason if this is requested. The result `None` ends the search.
 pub type RunProgram<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
-/// Makes a scene smaller. Begins with the first of these scenes that fails only for the original reason. If there is
-/// none, begins with the first that fails for the original reason and others. Returns `None` if there is no such scene.
+/// Returns the smallest scene that a search finds. The search begins with the first of these scenes that fails only for
+/// the original reason. If there is none, it begins with the first scene that also fails for other reasons. Returns
+/// `None` if no scene fails for the original reason.
 pub fn reduce(
     beginnings: &[(u32, Scene)],
     assignment: Assignment,

@@ -6,14 +6,15 @@ use fosssim_model::{
 };
 use std::ops::Range;
 
-/// A kind of reduction: returns the scenes of attempt `index`, the best first, or `None` after the last attempt.
+/// A kind of reduction: a function that returns the scenes of attempt `index`, the best first, or `None` after the last
+/// attempt.
 pub(crate) type Reduction = fn(&Scene, Assignment, usize) -> Option<Vec<Scene>>;
 
 /// All kinds of reductions, in the order in which they are tried.
 pub(crate) const REDUCTIONS: [Reduction; 4] = [remove_parts, simplify, move_and_round, round_number];
 
-/// Removes all parts but the first body, halves of them, then quarters, down to single ones. The parts are bodies,
-/// edges, half-planes and forces.
+/// Returns attempt `index` at removing parts (bodies, edges, half-planes and forces). The first attempt removes all
+/// parts except the first body. Later ones remove half of the parts, then a quarter, and finally single parts.
 fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let count = scene.particles.len() + scene.edges.len() + scene.half_planes.len() + scene.forces.len();
     let lengths = std::iter::successors(Some(count / 2), |length| Some(length / 2)).take_while(|length| *length > 0);
@@ -22,7 +23,8 @@ fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>
     std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without_parts(scene, &range)]).next()
 }
 
-/// Returns a scene without these parts and all that depends on them: edges with their ends, forces with their bodies.
+/// Returns the scene without these parts and without everything that depends on them. An edge depends on its ends, and
+/// a force on its bodies or its edge.
 fn without_parts(scene: &Scene, parts: &Range<usize>) -> Scene {
     let (mut scene, mut part) = (scene.clone(), 0..);
     let mut stays = || part.next().is_some_and(|part| !parts.contains(&part));
@@ -44,7 +46,7 @@ fn without_parts(scene: &Scene, parts: &Range<usize>) -> Scene {
     scene
 }
 
-/// Keeps some parts, and returns the new number of each kept part.
+/// Keeps the parts for which `stays` is true. Returns the new index of each part, or `None` for a removed one.
 fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool) -> Vec<Option<usize>> {
     let (mut numbers, mut next) = (Vec::new(), 0..);
     parts.retain_mut(|part| {
@@ -54,8 +56,8 @@ fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool)
     numbers
 }
 
-/// Simplifies one feature, beginning with the most complex one. The result uses only features of the assignment's
-/// library.
+/// Returns scenes in which one feature is simplified, the collision handling first. The integrators are those of the
+/// assignment's library.
 fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<Scene>> {
     let with = |collision: Collision| Scene { collision, ..scene.clone() };
     let mut all = Vec::new();
@@ -74,7 +76,7 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     (index == 0).then_some(all)
 }
 
-/// Moves a body or a half-plane to the origin, and rounds all numbers.
+/// Returns scenes in which a body or a half-plane is at the origin and all numbers are rounded.
 fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let bodies = scene.particles.iter().map(|particle| particle.position);
     let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
@@ -105,7 +107,7 @@ fn round(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse().unwrap_or(value) + 0.0
 }
 
-/// Makes one number rounder, the roundest first.
+/// Returns scenes in which number `index` is rounder, the roundest first.
 fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
     let (kind, value) = list_numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;

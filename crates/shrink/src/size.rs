@@ -16,7 +16,7 @@ const MAX_GROWTH: f64 = 1e4;
 /// The kind of a number in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NumberKind {
-    /// The number is a coordinate of a place. A scene has no origin of its own.
+    /// The number is a coordinate of a position. A scene may be moved, so no coordinate is special.
     Place,
     /// The number is 0 in the simplest case, such as a thickness or a component of a velocity.
     Addition,
@@ -85,7 +85,7 @@ pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
 /// The size of a scene: the first number that differs decides which of two is smaller.
 pub(crate) type Size = ([usize; 9], f64);
 
-/// Measures a scene. The most important part of the size is first:
+/// Returns the size of a scene, with the most important part first:
 ///
 /// 1. whether the result depends on round-off;
 /// 2. warnings, and parts that programs of the assignment do not support;
@@ -123,14 +123,15 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
 }
 
-/// Counts the warnings about a scene, and its parts that programs of the assignment do not support. A scene that is not
-/// sound has more of them than any other.
+/// Returns the number of warnings about a scene, and of its parts that programs of the assignment do not support. For a
+/// scene that cannot be read back, returns the largest number.
 fn count_oddities(scene: &Scene, assignment: Assignment) -> usize {
     let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
     loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_features(assignment).count())
 }
 
-/// Returns the digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5 and for 10.
+/// Returns the number of digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5
+/// and for 10.
 fn count_digits(value: f64) -> usize {
     let text = value.abs().to_string();
     text.strip_prefix("0.").unwrap_or(&text).chars().filter(char::is_ascii_digit).count()

@@ -12,12 +12,12 @@ fn from_trace(trace: Vec<u8>) -> Observation {
     Observation { trace, ended: fosssim_ended::RunEnd::Exited(0) }
 }
 
-/// Returns what the simulator with mistakes makes of a scene.
+/// Returns the observation of a student's program on a scene.
 fn run(scene: &Scene, student: Student) -> Observation {
     from_trace(record_limited_trace(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
 }
 
-/// Returns the most significant digits that a number of the scene has: 1 for 0.05 and for 10, 2 for 1.5.
+/// Returns the largest number of significant digits of the scene's numbers: 1 for 0.05 and for 10, 2 for 1.5.
 fn most_digits(scene: &Scene) -> usize {
     let significant = |value: &f64| {
         let digits: String = value.abs().to_string().chars().filter(char::is_ascii_digit).collect();
@@ -89,7 +89,7 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     assert!(reason.is_reproduced(&some.scene, &run(&some.scene, student), false));
 }
 
-/// A program that never ends shows it on any scene: one body is tried before all else.
+/// If a program fails on every scene, a scene with one body is tried before all others.
 #[test]
 fn one_body_is_tried_first() {
     let scene = &probe_scenes(Assignment::T2M2)[0].1;
@@ -112,8 +112,8 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     assert_eq!(WrongReason::first_reason(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
 }
 
-/// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, and the
-/// trace is whole.
+/// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, although
+/// the trace is whole.
 #[test]
 fn a_judgement_that_stops_is_no_broken_trace() {
     let posts = |y: f64, fixed: u8| {

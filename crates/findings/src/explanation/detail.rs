@@ -1,4 +1,5 @@
-//! Data types for the exact form of a fault. The exact form may reveal a right formula.
+//! Data types for the exact form of a fault: the formulas and numbers that describe the fault completely. The exact
+//! form may reveal a right formula.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
@@ -68,7 +69,7 @@ pub enum PolynomialDetail {
     FirstOnly(usize),
     /// Every displacement is multiplied by this factor.
     Displacements(#[serde(with = "fosssim_num::number_serde")] f64),
-    /// The radius that a particle and a half-plane have, or the sum of the radii of two bodies, is another one.
+    /// A wrong radius is used for a particle and a half-plane, or a wrong sum of radii for two bodies.
     Reach {
         /// The kind of pair.
         kind: PairKind,
@@ -79,7 +80,7 @@ pub enum PolynomialDetail {
         #[serde(with = "fosssim_num::number_serde")]
         expected: f64,
     },
-    /// The formula is changed in a way that has a name.
+    /// The inputs or the formula are changed in a way that the assignment's data describe.
     Named {
         /// The key of the change in the assignment's data.
         key: Cow<'static, str>,
@@ -158,7 +159,7 @@ pub enum StageDetail {
     Factor(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The range of the times of impact, as fractions of the step.
     Impacts {
-        /// Whether the range is that of contacts whose responses are right.
+        /// Whether the contacts in the range are right.
         right: bool,
         /// The number of contacts in the range.
         count: usize,
@@ -176,10 +177,10 @@ pub enum StageDetail {
     VectorError(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The times of impact, divided by the right ones.
     Times(Ratios),
-    /// The largest error of a time of impact, as a fraction of the step.
+    /// The error that all times of impact have in common, as a fraction of the step.
     #[serde(rename = "TimesOff")]
     TimeError(#[serde(with = "fosssim_num::number_serde")] f64),
-    /// The times of impact are right, but are not used as they should be.
+    /// The advice to use the root finder's time of impact unchanged.
     #[serde(rename = "TimesUsed")]
     TimeUse,
     /// The number of detection passes in the impulse rounds is wrong.
@@ -223,7 +224,7 @@ pub enum StageDetail {
     /// The rotation of zones, divided by the right rotation.
     #[serde(rename = "Turns")]
     Rotations(Ratios),
-    /// The velocities of zones, divided by their displacement per step size.
+    /// The velocities of zones, divided by their displacements over the time step.
     Velocities(Ratios),
 }
 

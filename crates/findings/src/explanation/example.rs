@@ -64,10 +64,10 @@ pub enum ExamplePlace {
         /// The record of the step that contains the particle.
         record: StepRecord,
     },
-    /// The numbers are a particle's position and velocity in the mid record, given by its index. The reference does not
-    /// know the right ones.
+    /// The mid record of the reference or of the trace is missing. There are no numbers. The value is the index of a
+    /// particle in the record.
     MidParticle(usize),
-    /// The numbers are the lengths of the mid record's lists of polynomials and impulses.
+    /// The lists of the mid record differ. There are no numbers.
     MidLists,
 }
 

@@ -53,8 +53,8 @@ pub enum StageFault {
         kind: Option<PairKind>,
         /// The fault of the changes.
         wrong: WrongResponses,
-        /// Whether the fault occurs only in impulse rounds, each of which starts from the states that the round before
-        /// has changed.
+        /// Whether the contacts are in impulse rounds, each of which starts from the states that the round before has
+        /// changed.
         in_rounds: bool,
     },
     /// After several contacts in one step the state is wrong, although isolated contacts are right.

@@ -107,7 +107,7 @@ fosssim_num::closed_set! {
         Factor = "letter-factor", "A quantity of the formula has a wrong factor";
         /// The radii are wrong.
         Radius = "other-radius", "The radii in the formula have wrong values";
-        /// Instead of the quantity, another one is used that is not in the formula.
+        /// Another quantity is used instead of this one.
         Other = "letter", "Another quantity is used instead of a dot product of the formula";
     }
     /// Returns the sentence for the guess.

@@ -242,7 +242,7 @@ impl Explanation {
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
-    /// Returns whether the explanation covers all of its polynomials or stages.
+    /// Returns whether the explanation reproduces every sample or names a wrong stage.
     pub fn is_exhaustive(&self) -> bool {
         self.is_complete() || self.names_stage()
     }

@@ -1,4 +1,4 @@
-//! Polynomials can be written in several forms, which have numbers.
+//! The forms in which the formula of a polynomial can be written.
 use super::subject::Subject;
 use serde::{Deserialize, Serialize};
 
