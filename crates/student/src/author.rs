@@ -23,6 +23,7 @@ impl Student {
 
     /// Returns the student with a further mistake. If two mistakes concern the same formula or rule, only the first is
     /// made.
+    /// A student with [`Student::MAX_MISTAKES`] mistakes stays unchanged.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
@@ -49,20 +50,19 @@ impl Student {
         self.mistakes[0].is_none()
     }
 
-    /// Returns the mistake in one of `areas`, if many mistakes are distinguished in one place. The first area with a
-    /// mistake counts.
+    /// Returns the first mistake in the first of `areas` that has one, or `None` if no area has a mistake.
     pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
         let mut here = areas.iter().filter(|area| self.areas & area_bit(**area) != 0);
         here.find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
-    /// Returns the first of `rows` that the student makes.
+    /// Returns the student's first mistake that is among `rows`, or `None` if there is none.
     pub(super) fn mistake_among(&self, rows: &[Mistake]) -> Option<Mistake> {
         self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
-    /// Returns the student with the corrected particle-edge approach (collisions.md 2). This approach is correct as
-    /// well, and is independent of the mistake.
+    /// Returns the student with the corrected particle-edge approach (collisions.md 2). This approach counts as correct
+    /// as well, and can be combined with any mistakes.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { uses_right_approach: true, ..self }
@@ -74,7 +74,6 @@ impl Student {
     }
 }
 
-/// Returns the bit of an area.
 const fn area_bit(area: Area) -> u64 {
     1 << area as u32
 }

@@ -7,7 +7,8 @@ use super::{
     world::{StepLog, World},
 };
 
-/// Detects and resolves contacts pair by pair, from `q_start` to the current end of `state`.
+/// Detects and resolves the contacts of one pair after the other. The bodies move from `q_start` to the positions in
+/// `state`, which the responses change.
 pub fn handle_collisions(
     world: &World,
     q_start: &[f64],

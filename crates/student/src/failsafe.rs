@@ -29,12 +29,13 @@ const STOP_MISTAKES: &[Mistake] = &[
     Mistake::FailsafeFixedSkipped,
 ];
 
-/// Returns the mistake in the motion of a zone.
+/// Returns the student's mistake in the motion of a zone, or `None` if there is none.
 fn motion_mistake(student: Student) -> Option<Mistake> {
     student.mistakes().find(|mistake| MODULE_AREAS.contains(&mistake.area()) && !STOP_MISTAKES.contains(mistake))
 }
 
-/// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
+/// Replaces the positions and velocities of the zone's particles at the end of the step. The zone moves as a rigid body
+/// with the same momentum, or stops if a part of it cannot move.
 pub fn move_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     let mistake = motion_mistake(world.student);
     if mistake == Some(Mistake::FailsafeEmpty) {
@@ -53,7 +54,7 @@ pub fn move_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State)
     }
 }
 
-/// Returns whether a part of the zone cannot move.
+/// Returns whether a part of the zone cannot move according to this student's program.
 fn is_stopped(world: &World, zone: &Zone) -> bool {
     let student = world.student;
     let fixed = zone_particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
@@ -77,7 +78,7 @@ fn is_stopped(world: &World, zone: &Zone) -> bool {
     half_plane || fixed || student.makes(Mistake::FailsafeAlwaysStops)
 }
 
-/// Returns the particles of a zone in the order of the loop.
+/// Returns the particles that this student's program treats as the zone's, in ascending order.
 fn zone_particles(world: &World, zone: &Zone) -> Vec<usize> {
     match (zone.particles.first(), zone.particles.last()) {
         (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
@@ -106,7 +107,7 @@ struct RigidBody<'a> {
     q_start: &'a [f64],
     /// The center of mass at the start of the step.
     center: Vec2,
-    /// The displacement within the step.
+    /// The displacement of the center of mass within the step.
     shift: Vec2,
     /// The zone's angular momentum about the center, times the step size.
     momentum: f64,
@@ -142,7 +143,7 @@ impl<'a> RigidBody<'a> {
         self.world.masses[index]
     }
 
-    /// Computes the center of mass and its motion from the particles' momenta.
+    /// Computes the center of mass and its displacement from the particles' momenta.
     fn compute_translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));

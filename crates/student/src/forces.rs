@@ -10,7 +10,8 @@ use super::{
     world::{World, add, subtract},
 };
 
-/// Returns the gradient of all forces at positions `x` and velocities `v`, in the order of the scene.
+/// Returns the gradient of the potentials of all forces at positions `x` and velocities `v`. The forces are added in
+/// the order of the scene, and the penalty force is added last.
 pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
     for force in &world.scene.forces {
@@ -88,8 +89,8 @@ fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64])
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
-/// Returns the factor of a direction, for a student who takes its absolute value, or a square like in the energy;
-/// `factor` is the squared quantity.
+/// Returns `value` with the student's slip in this term, if there is one. A student may take the absolute value, or
+/// multiply by `factor` once more, as the energy contains its square.
 fn apply_slips(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.makes_slip(term, Slip::Absolute) => value.abs(),

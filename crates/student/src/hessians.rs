@@ -96,7 +96,8 @@ impl HessianSum<'_> {
         self.uses_velocities == (uses_velocities != is_other)
     }
 
-    /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it off the diagonal.
+    /// Adds `block` to the diagonal blocks of particles `a` and `b`, and subtracts it from the two blocks off the
+    /// diagonal.
     fn add_pair(&mut self, term: Term, (a, b): (usize, usize), block: &Matrix2, length: f64) {
         let student = self.world.student;
         let has_slips = student.slips(term).next().is_some();
@@ -187,7 +188,7 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     })
 }
 
-/// Returns the derivatives of a spring's damping by positions.
+/// Returns the derivatives of a spring's damping force by positions.
 fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let makes = |mistake: StepMistake| world.student.makes(mistake);
@@ -209,7 +210,7 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     build_block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
 }
 
-/// Returns the derivatives of a spring's damping by velocities.
+/// Returns the derivatives of a spring's damping force by velocities.
 fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let edge = world.scene.edges[edge];

@@ -9,11 +9,11 @@ use super::{
     world::{StepLog, World},
 };
 
-/// The limit of impulses in programs that cap them (length per time).
+/// The maximum change of velocity by the impulses of one round, in programs that limit it (length per time).
 const MAX_IMPULSE: f64 = 0.5;
 
-/// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
-/// `state` is the prediction at the beginning, and the result at the end.
+/// Applies impulses until a pass finds no contact, or until `max_iterations` rounds are over. Returns whether a pass
+/// found no contact. `state` is the prediction at the beginning, and the result at the end.
 pub fn apply_rounds(
     world: &World,
     q_start: &[f64],

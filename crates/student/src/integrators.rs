@@ -11,7 +11,8 @@ use super::{
 /// The maximum number of iterations of Newton's method. The course's program would continue forever.
 const MAX_NEWTON_ITERATIONS: u32 = 100_000;
 
-/// The maximum number of iterations with a mistake, because such a program converges soon or hardly at all.
+/// The maximum number of iterations of Newton's method in a program with a mistake. Such a program converges soon or
+/// hardly ever.
 const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 60;
 
 /// Advances the state by one step without collisions. `solves` counts the systems that are solved.
@@ -47,7 +48,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
 
 const SYMPLECTIC_TERMS: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
-/// Returns the term that represents the whole step of an integrator that students write.
+/// Returns the term that represents the whole step of an integrator, or `None` if students do not write the integrator.
 const fn whole_step_term(integrator: Integrator) -> Option<Term> {
     Some(match integrator {
         Integrator::ExplicitEuler => Term::Explicit,
@@ -71,8 +72,8 @@ fn mishandle_fixed(world: &World, whole: Term, before: &State, state: &mut State
     }
 }
 
-/// Returns the rate at which velocities move positions, for a student who may use a different rate than the
-/// assignment's.
+/// Returns the velocities with which this student's program moves positions. `right_rate` contains the velocities that
+/// the assignment requires, and `other_rate` those that a student may use by mistake.
 fn position_rate(world: &World, term: Term, right_rate: &[f64], other_rate: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.makes_slip(term, Slip::OtherVelocity) => other_rate.to_vec(),
@@ -83,8 +84,8 @@ fn position_rate(world: &World, term: Term, right_rate: &[f64], other_rate: &[f6
     }
 }
 
-/// Makes one step of the explicit integrators, which move positions with the old or the new velocities, with the forces
-/// of a world that may have a different author.
+/// Makes one step of the explicit integrators, which move positions with the old or the new velocities. The forces are
+/// those of the world `forces`, whose program may have a different author.
 fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a multiplication, because a change of sign would also change the sign of a NaN.

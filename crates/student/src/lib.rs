@@ -1,9 +1,9 @@
 //! A second simulator, which can make mistakes; it simulates a student's submission.
 //!
-//! It is written separately from [`fosssim_model::sim`], and makes one of the documented mistakes of the [`CATALOGUE`]
-//! on request; the catalogue also contains correct variants. The sample program is this simulator with arguments and a
-//! file; `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**:
-//! verdicts come only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing.
+//! It is written separately from [`fosssim_model::sim`], and makes documented mistakes of the [`CATALOGUE`] on request.
+//! The catalogue also contains correct variants. The sample program is this simulator with arguments and a file.
+//! `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**: verdicts come
+//! only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing.
 //!
 //! The mathematics is that of `simulation.md` and `collisions.md`. The crates below supply the course's parts: the
 //! scene, the vectors, the linear solver and the root finder. They also supply the right polynomials, which mistakes

@@ -10,7 +10,8 @@ pub struct NearPairSearch<'a> {
     h: f64,
     /// The positions that are checked.
     x: Vec<f64>,
-    /// The rank of each particle in the order of lower ends on x, if the student's mistake needs it.
+    /// The rank of each particle among all particles, sorted by their smallest x-coordinates. The list is empty if the
+    /// student's mistake does not need it.
     ranks: Vec<usize>,
 }
 
@@ -18,7 +19,8 @@ pub struct NearPairSearch<'a> {
 type BoundingBox = [Vec2; 2];
 
 impl<'a> NearPairSearch<'a> {
-    /// Creates the search at positions `x`, after velocities `v`, for layers of thickness `h`.
+    /// Creates the search at positions `x`, which the particles reached with velocities `v`, for layers of thickness
+    /// `h`.
     pub fn new(world: &'a World, h: f64, x: &[f64], v: &[f64]) -> Self {
         let student = world.student;
         let start = || world.initial_state().x;
@@ -41,7 +43,7 @@ impl<'a> NearPairSearch<'a> {
         Self { world, h, x, ranks }
     }
 
-    /// Returns how many times a nearby pair is found.
+    /// Returns how many times the student's program finds a nearby pair: 0, 1 or 2.
     pub fn pair_count(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
@@ -98,7 +100,7 @@ impl<'a> NearPairSearch<'a> {
             StepMistake::NearPairsOfStart,
             StepMistake::NearPairsOfLastStep,
         ];
-        // The box of a nearby pair always overlaps the other one.
+        // Without these mistakes, the boxes of a nearby pair always overlap.
         !looks.into_iter().any(makes)
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
@@ -110,7 +112,7 @@ impl<'a> NearPairSearch<'a> {
         [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
-    /// Returns the boxes with which the search finds an edge.
+    /// Returns the boxes of an edge in this student's program. The search finds the edge if one of them overlaps.
     fn edge_boxes(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;

@@ -1,4 +1,4 @@
-//! Objects that move, that collide, or that move together.
+//! The state of all particles, and the pairs, contacts and impact zones of a step.
 use fosssim_num::vector::Vec2;
 use std::collections::BTreeSet;
 

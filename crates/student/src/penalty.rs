@@ -16,13 +16,13 @@ pub struct PenaltyLayer {
     pub k: f64,
     /// The thickness, which is added to the radii.
     pub h: f64,
-    /// The method that finds the pairs, which determines the order of the sum. In the contest, bodies at the same
-    /// position do not repel each other.
+    /// The method that finds nearby pairs. It determines the order in which their forces are added. In the contest,
+    /// bodies at the same position do not repel each other.
     pub detection: CollisionDetection,
 }
 
-/// Adds the gradient of the penalty force at positions `x`, after velocities `v`. Pairs out of reach add nothing, so a
-/// program may omit them.
+/// Adds the gradient of the penalty force to `g`, at positions `x` that the particles reached with velocities `v`.
+/// Pairs out of reach add nothing, so a program may omit them.
 pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g: &mut [f64]) {
     let student = world.student;
     let has_own_pairs = student.mistake_in(&[Area::Penalty, Area::NearPairs]).is_some();
@@ -77,8 +77,8 @@ impl PenaltySum<'_> {
         }
     }
 
-    /// Returns `k` times the depth of the overlap of two bodies' layers, a negative number, or `None` if they do not
-    /// overlap.
+    /// Returns the stiffness and the depth of the overlap of two bodies' layers, which is a negative number. Returns
+    /// `None` if the layers do not overlap.
     fn overlap_depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
         let makes = |slip: Slip| self.world.student.makes_slip(term, slip);
@@ -180,8 +180,9 @@ impl PenaltySum<'_> {
     }
 }
 
-/// Returns the closest point of an edge in this student's formulas; `limited` is the right way to keep it between the
-/// ends.
+/// Returns the parameter of an edge's closest point in this student's formulas. It is 0 at the first end and 1 at the
+/// second. `alpha` is the parameter on the infinite line, and `limited` keeps a parameter between the ends as a correct
+/// program does.
 pub fn closest_alpha(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
     student
         .slips(term)

@@ -73,7 +73,7 @@ impl Record {
 /// Runs this student's program on `scene` and returns its trace.
 ///
 /// # Errors
-/// Returns the bytes written before the failing step, and the failure.
+/// Returns the bytes written before the failure, and the failure.
 pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     write_trace(scene, student, StepLog::default())
 }
@@ -82,7 +82,7 @@ pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>
 /// limit, the program may run forever.
 ///
 /// # Errors
-/// Returns the bytes written before the failing step, and the failure.
+/// Returns the bytes written before the failure, and the failure.
 pub fn record_limited_trace(
     scene: &Scene,
     student: Student,

@@ -13,7 +13,8 @@ use super::{
 /// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Response];
 
-/// Returns the factor `1 + COR` of a correct program. The code takes it apart, because some mistakes change the half.
+/// Returns the factor of the impulse, which is `1 + COR` in a correct program. It is twice its half, because some
+/// mistakes forget to double the half.
 pub fn restitution_factor(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(MODULE_AREAS) {
@@ -36,7 +37,7 @@ fn restitution(world: &World) -> f64 {
 }
 
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
-/// `predicted.x`, which may be an earlier state than `result`.
+/// `predicted.x`. `predicted` may be an earlier state than `result`.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
     let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
     let mut response = PairResponse { world, q_start, predicted, result, u, factor: restitution_factor(world) };
@@ -58,12 +59,13 @@ struct PairResponse<'a> {
     result: &'a mut State,
     /// The unit contact vector.
     u: Vec2,
-    /// The factor `1 + COR` of a correct program.
+    /// The factor of the impulse, from [`restitution_factor`].
     factor: f64,
 }
 
 impl PairResponse<'_> {
-    /// Returns the particle's mean velocity over the step.
+    /// Returns the velocity of the particle from which the impulse is computed. A correct program uses its mean
+    /// velocity over the step.
     fn velocity(&self, particle: usize) -> Vec2 {
         if self.world.student.makes(Mistake::ResponseEndVelocity) {
             return vector_at(&self.predicted.v, particle);
@@ -71,7 +73,8 @@ impl PairResponse<'_> {
         divide(vector_at(&self.predicted.x, particle) - vector_at(self.q_start, particle), self.world.scene.time_step)
     }
 
-    /// Pushes a particle that is not fixed. The change of its speed along `u` is `share / inertia`.
+    /// Changes a particle that is not fixed. Its velocity changes by `sign * share / inertia` along `u`, and its
+    /// position by `sign * moved / inertia`.
     fn push(&mut self, particle: usize, sign: f64, share: f64, moved: f64, inertia: f64) {
         let student = self.world.student;
         if self.world.is_fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
@@ -185,6 +188,7 @@ pub fn response_masses(student: Student, first: f64, second: f64) -> (f64, f64) 
 }
 
 /// Returns the share of an edge's second end in this student's formulas.
+/// `alpha` is the share in the right formulas.
 pub fn second_end_share(student: Student, alpha: f64) -> f64 {
     match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseEdgeMiddle) => 0.5,
@@ -193,7 +197,7 @@ pub fn second_end_share(student: Student, alpha: f64) -> f64 {
     }
 }
 
-/// Clamps a number to the range from 0 to 1. A NaN becomes 0.
+/// Returns the number limited to the range from 0 to 1. A NaN becomes 0.
 pub fn clamp(alpha: f64) -> f64 {
     let positive = if 0.0 < alpha { alpha } else { 0.0 };
     if positive < 1.0 { positive } else { 1.0 }

@@ -1,4 +1,5 @@
-//! Sums of products outside detection, as evaluated by this student's compiler: operation by operation, or fused.
+//! Sums of products outside detection. This student's compiler rounds after each operation, or fuses a product and a
+//! sum.
 use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
 use super::{Mistake, author::Student};
@@ -25,7 +26,7 @@ impl Student {
         Vec2::new(self.add_product(v.x, s, w.x), self.add_product(v.y, s, w.y))
     }
 
-    /// Returns the dot product with this rounding.
+    /// Returns the dot product of two vectors, rounded as this student's compiler does.
     pub fn dot(self, a: Vec2, b: Vec2) -> f64 {
         self.add_product(a.x * b.x, a.y, b.y)
     }

@@ -12,7 +12,8 @@ use super::{
     world::{StepLog, World},
 };
 
-/// Handles all pairs in order. Each uses the velocities after the previous pairs.
+/// Detects and resolves the contacts of all pairs in order, and adds them to `log`. Each pair uses the velocities that
+/// the previous pairs have changed.
 pub fn handle_collisions(world: &World, state: &mut State, log: &mut StepLog) {
     let pass = SimplePass { world, start: state.v.clone() };
     for pair in world.pairs() {
@@ -32,7 +33,7 @@ struct SimplePass<'a> {
     start: Vec<f64>,
 }
 
-/// The functions and quantities of one kind of pair.
+/// The terms of the functions and formulas for one kind of pair.
 struct SimpleKind {
     detection: Term,
     overlap: Term,
@@ -89,7 +90,7 @@ impl SimplePass<'_> {
             && holds(kind.approach, 0.0, w.dot(&n))
     }
 
-    /// Returns the contact vector that the program returns.
+    /// Returns the contact vector of this student's program. `n` is the right vector.
     fn contact_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
@@ -100,7 +101,7 @@ impl SimplePass<'_> {
         })
     }
 
-    /// Returns `1 + COR`.
+    /// Returns the factor of the impulse, which is `1 + COR` in a correct program.
     fn restitution_factor(&self, kind: &SimpleKind) -> f64 {
         let Collision::Simple { restitution } = self.world.scene.collision else { return 2.0 };
         match () {
@@ -108,7 +109,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.response, Slip::Inelastic) => 1.0,
             () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
             () if self.makes(kind.response, Slip::RestitutionTwice) => 2.0 * restitution,
-            // The half is doubled, in the order of the reference.
+            // Like in the reference, the half of `1 + COR` is doubled.
             () => 2.0 * ((1.0 + restitution) / 2.0),
         }
     }
@@ -129,7 +130,7 @@ impl SimplePass<'_> {
         }
     }
 
-    /// Changes the velocity of a body of the pair with the given role.
+    /// Changes the velocity of a particle that is not fixed. `role` is its number among the bodies of the pair.
     fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
         if !self.world.is_fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
             let part = TermPart { role, length: length(n), ..TermPart::from_term(kind.response, particle) };
@@ -236,7 +237,8 @@ impl SimplePass<'_> {
         self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 
-    /// Responds to a contact with a half-plane. A fixed particle is changed as well.
+    /// Detects and resolves a contact with a half-plane. Returns the contact vector, or `None` if there is no contact.
+    /// The velocity of a fixed particle is changed as well.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
         let kind = &HALF_PLANE_KIND;
         let plane = self.world.scene.half_planes[index];

@@ -1,4 +1,4 @@
-//! The slips of a student in the program's quantities: the parts of a sum, the weights of terms, the tests.
+//! The effects of a student's slips on the quantities that the program computes.
 use super::{
     Mistake, StepMistake,
     author::Student,
@@ -49,19 +49,21 @@ impl Student {
 }
 
 impl World {
-    /// Returns the weight of a numeric quantity in this student's program, by its slips except those of the whole.
+    /// Returns the factor by which the student's slips multiply a quantity. Slips in larger quantities that contain it
+    /// do not count. `length` is the distance between the bodies.
     pub fn weight(&self, term: Term, length: f64) -> f64 {
         let own = self.student.edits().filter(|edit| edit.term == term);
         own.map(|edit| self.factor(edit, 0, length)).product()
     }
 
-    /// Returns the weight of a particle's part of a quantity, with the slips of the whole.
+    /// Returns the factor by which the student's slips multiply a particle's part of a quantity. Slips in larger
+    /// quantities that contain it count as well.
     pub fn whole_weight(&self, term: Term, particle: usize, length: f64) -> f64 {
         let all = self.student.edits().filter(|edit| edit.term.covers(term));
         all.map(|edit| self.factor(edit, particle, length)).product()
     }
 
-    /// Returns the factor of a slip.
+    /// Returns the factor by which a slip multiplies a quantity, or 1 if the slip has another effect.
     fn factor(&self, Edit { term, slip }: Edit, particle: usize, length: f64) -> f64 {
         let mass = self.masses[2 * particle];
         let of_mass = |used: f64| if term.row().mass < 0 { mass / used } else { used / mass };
@@ -84,7 +86,7 @@ impl World {
         }
     }
 
-    /// Adds a part to a sum over all particles, or subtracts it, like this student's program.
+    /// Adds a part to a sum over all particles, or subtracts it, as this student's program does.
     pub fn contribute(&self, sum: &mut [f64], part: TermPart, value: Vec2) {
         let TermPart { term, particle, first, role, length, is_negative } = part;
         let last = self.scene.particles.len() - 1;
@@ -127,7 +129,7 @@ impl World {
         self.contribute(g, part(1, ends.1), push);
     }
 
-    /// Adds `h` times each rate to the numbers of its particle.
+    /// Adds `h` times each rate to the number at the same index of `target`, with the student's slips in this term.
     pub fn advance(&self, term: Term, target: &mut Vec<f64>, h: f64, rates: &[f64]) {
         if self.student.slips(term).next().is_none() {
             *target = self.student.add_scaled_lists(target, h, rates);

@@ -16,8 +16,8 @@ const MODULE_AREAS: &[Area] = &[Area::Trace];
 /// and the end record (trace-format.md 2).
 ///
 /// # Errors
-/// Fails with a [`StepFailure`] if the course's program would never end. `state` and `log` are then unspecified, and
-/// the end record is not written.
+/// Fails if the course's program would never end or cannot integrate a force, or if the guard of the log stops the
+/// step. `state` and `log` are then unspecified, and the end record is not written.
 pub fn step(
     world: &World,
     state: &mut State,
@@ -60,8 +60,8 @@ pub fn step(
     Ok(())
 }
 
-/// Returns the cost of one solve of an implicit integrator's system, in units of a polynomial, which are a few thousand
-/// operations.
+/// Returns the work of solving the linear system of an implicit integrator once. The unit is the work for one
+/// polynomial, which is a few thousand operations.
 fn solve_work(world: &World) -> u64 {
     10 + (2 * world.scene.particles.len() as u64).pow(3) / 1500
 }

@@ -1,7 +1,7 @@
-//! Lists the reasons why a step of a student's program has no end.
+//! The reasons why a step of a student's program is not completed.
 use fosssim_num::rpoly::DoesNotTerminate;
 
-/// The reason why a step has no end.
+/// The reason why a step is not completed.
 #[derive(Debug, thiserror::Error)]
 pub enum StepFailure {
     /// The course's root finder would search forever.
@@ -15,6 +15,7 @@ pub enum StepFailure {
     VortexHessian,
     /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller has enough
     /// information.
+    /// A step with a guard also stops if it has too many impact zones.
     #[error("the caller rejected a polynomial, so the step was stopped")]
     Stopped,
 }

@@ -1,4 +1,4 @@
-//! The world of a step: the scene's constants, the moving state, and the pairs that detection checks.
+//! The world of a step: the data that stay constant, the pairs that detection checks, and the log.
 use fosssim_model::scene::Scene;
 use fosssim_num::{
     polynomial::Polynomial,
@@ -33,14 +33,17 @@ pub struct StepLog<'a> {
     pub polynomials: Vec<Polynomial>,
     /// The guard that receives each polynomial as it is logged, with its index, before the search for its roots.
     pub guard: Option<StepGuard<'a>>,
-    /// The number of steps of root searches beyond the usual number.
+    /// The work that the polynomials' number does not show: the steps of root searches beyond the usual number, and the
+    /// solutions of linear systems.
     pub long_searches: u64,
-    /// The integrator's prediction, after the impulse rounds have started.
+    /// The positions that the integrator predicted. They are set when the impulse rounds start, and removed when the
+    /// impact zones are handled.
     pub prediction: Option<Vec<f64>>,
 }
 
-/// Decides whether a step may continue after a polynomial (index in the step's log, coefficients highest power first).
-/// A search for a certain step stops it as soon as it differs. A guard also bounds loops that mistakes make endless.
+/// A function that returns whether a step may continue after a polynomial. Its arguments are the polynomial's index in
+/// the step's log and the coefficients, highest power first. A search for a program that writes certain polynomials
+/// stops the step at the first other polynomial. A guard also bounds loops that mistakes make endless.
 pub type StepGuard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.
@@ -95,7 +98,7 @@ impl World {
         self.scene.particles[particle].fixed
     }
 
-    /// Returns the radius that the program uses for an edge in a quantity.
+    /// Returns the radius of an edge that this student's program uses in the quantity `term`.
     pub fn edge_radius(&self, term: Term, edge: usize) -> f64 {
         let edges = &self.scene.edges;
         match () {
@@ -111,8 +114,8 @@ fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
     scene.edges.iter().any(|edge| [(one, two), (two, one)].contains(&(edge.first, edge.second)))
 }
 
-/// Returns all pairs in the order of detection: per particle the later particles, the edges that do not end in it, and
-/// the half-planes.
+/// Returns all pairs that the student's program checks, in order. A correct program checks for each particle the later
+/// particles, the edges that do not end in it, and the half-planes.
 fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), ParticlePairs { scene, student });
     let particles = 0..scene.particles.len();

@@ -40,7 +40,7 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
     Zone { particles, has_half_plane: half_plane }
 }
 
-/// Joins zones until no two share a particle.
+/// Returns the zones after joining those that share a particle, until no two zones share one.
 pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
     match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesNotMerged) => return zones,
@@ -100,7 +100,7 @@ fn merge_all(zones: Vec<Zone>) -> Vec<Zone> {
     merged.into_iter().collect()
 }
 
-/// Merges the zones with a union-find structure, in the order of their first particles.
+/// Returns the joined zones in the order of their first particles. It uses a union-find structure.
 fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     let count = zones.iter().filter_map(|zone| zone.particles.last()).max().map_or(0, |last| last + 1);
     let mut parents: Vec<usize> = (0..count).collect();

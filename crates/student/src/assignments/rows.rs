@@ -1,7 +1,7 @@
 //! Everything that a student's program can do differently, one row each.
 //!
 //! There are two kinds of rows: `wrong` programs have a mistake and write a different trace; `variant`s are correct
-//! except for round-off or a positive factor. The place in the simulation where a mistake is made calls
+//! except for round-off or a positive factor. The code of the simulation in which a mistake is made calls
 //! [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces are in
 //! [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
 pub use fosssim_findings::explanation::Area;
@@ -102,9 +102,10 @@ const fn is_equal_text(one: &str, other: &str) -> bool {
     at == one.len() && at == other.len()
 }
 
-/// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that contain
-/// mistakes of other tables, and the type of edits. A group may name a file with the sentences of its rows and of the
-/// following rows. A mistake in a formula has its edit in brackets, from which the student's program is derived.
+/// Declares a table of rows and the type of its mistakes. The arguments are the name of the type, the name of the
+/// table, further variants that contain mistakes of other tables, and the type of edits. A group may name a file with
+/// the sentences of its rows and of the following rows. A mistake in a formula has its edit in brackets, from which the
+/// student's program is derived.
 macro_rules! rows {
     (
         $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*] [$($edits:ident)?]

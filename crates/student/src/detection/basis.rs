@@ -1,7 +1,8 @@
 //! Correct programs that compute coefficients indirectly: through the Bernstein basis, or from values at several times.
 use fosssim_model::sim::PairMotion;
 
-/// Converts a power basis list (highest power first) to the Bernstein basis over the step, and back.
+/// Converts the coefficients of a polynomial (highest power first) to the Bernstein basis over the step and back. The
+/// result differs from `list` only by round-off.
 pub fn convert_through_bernstein(list: &[f64]) -> Vec<f64> {
     let degree = list.len() - 1;
     let power = |k: usize| list[degree - k];
@@ -23,8 +24,8 @@ fn alternating_sign(exponent: usize) -> f64 {
     if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// Returns the coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` evenly
-/// spaced times of the step, by Newton's divided differences.
+/// Returns the coefficients (highest power first) of the polynomial that equals `value` at `degree + 1` evenly spaced
+/// times of the step. They are computed by Newton's divided differences.
 fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
@@ -49,7 +50,7 @@ fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     p
 }
 
-/// Returns the polynomials of a pair from their values; for a particle and an edge, all but the approach.
+/// Returns the polynomials of a pair, computed from their values. The approach of a particle and an edge is left out.
 pub fn polynomials(motion: &PairMotion) -> Vec<Vec<f64>> {
     match *motion {
         PairMotion::Particles { centers: [one, two], radii } => {

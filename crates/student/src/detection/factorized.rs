@@ -1,5 +1,5 @@
-//! The particle-edge polynomials as products of three quadratics. With `w = x1 - x2` and `e = x3 - x2`, both linear in
-//! t, they need only the cross product `q = e x w` and the squared length `g = e.e`.
+//! The particle-edge polynomials, computed from two quadratics. With `w = x1 - x2` and `e = x3 - x2`, both linear in t,
+//! the quadratics are the cross product `q = e x w` and the squared length `g = e.e`.
 //!
 //! The quartic is `R² g - q²`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
 use fosssim_num::vector::Vec2;
@@ -44,7 +44,7 @@ pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     result
 }
 
-/// Returns the approach, mathematically right in every coefficient.
+/// Returns the approach, whose coefficients are all mathematically right.
 pub fn quintic(bodies: &[PointMotion; 3]) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let first = product(&derivative(&q), &g);
@@ -53,7 +53,7 @@ pub fn quintic(bodies: &[PointMotion; 3]) -> Vec<f64> {
     product(&q, &inner).iter().map(|coefficient| -0.5 * coefficient).collect()
 }
 
-/// Returns alpha < 1, from the letters of the other polynomials.
+/// Returns the polynomial alpha < 1, computed from the letters of the other polynomials.
 pub fn alpha_below_one([one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
     let (x12, x32) = (one.start - two.start, three.start - two.start);
     let (d12, d32) = (one.shift - two.shift, three.shift - two.shift);

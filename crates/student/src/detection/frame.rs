@@ -1,4 +1,4 @@
-//! Correct programs that compute in coordinates that are not the scene's, which changes no event.
+//! Correct programs that compute in other coordinates than the scene's. The choice of coordinates changes no event.
 use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
@@ -9,8 +9,8 @@ const MODULE_AREAS: &[Area] = &[Area::Handover];
 /// The origin of a program whose coordinates are shifted.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
-/// The cosine and sine of the angle by which a program rotates its coordinates. The angle of 3-4-5 would not do,
-/// because its products are often exact.
+/// The cosine and sine of the angle by which a program rotates its coordinates. The angle of the right triangle with
+/// the sides 3, 4 and 5 would not do, because products with its cosine and sine are often exact.
 const ROTATION: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
 /// The coordinate axes in which a program computes.
@@ -20,7 +20,7 @@ pub enum Axes {
     Scene,
     /// The axes have another origin.
     Shifted,
-    /// The axes have another origin in each detection, which moves with the first particle.
+    /// The origin is the first particle of the pair in each detection, and moves with it.
     Comoving,
     /// The axes have other directions.
     Rotated,
@@ -37,7 +37,7 @@ impl Axes {
         }
     }
 
-    /// Converts a point of the scene to these axes; `particle` is the position of the pair's first particle at the same
+    /// Converts a point of the scene to these axes. `particle` is the position of the pair's first particle at the same
     /// time.
     pub fn transform_point(self, point: Vec2, particle: Vec2) -> Vec2 {
         match self {

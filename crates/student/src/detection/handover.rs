@@ -6,8 +6,8 @@ use crate::{Area, Mistake, author::Student, objects::Object, rounding::round_to_
 /// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
-/// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
-/// mistake.
+/// Returns the polynomials of one pair as the root finder receives them. Small leading coefficients are removed, and
+/// this student's mistake may change the lists.
 pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
     // An empty detection passes on no polynomials, even if the student made other mistakes.
     if lists.is_empty() {
@@ -33,7 +33,8 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
     lists.iter().map(|list| Polynomial::trimmed(list)).collect()
 }
 
-/// Returns the positive factor of the correct variants that rescale their polynomials.
+/// Returns the positive factor by which a correct variant multiplies its polynomials, or `None` if it does not rescale
+/// them.
 fn rescaling_factor(student: Student, object: Object) -> Option<f64> {
     let factor = match (student.mistake_in(MODULE_AREAS)?, object) {
         (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,

@@ -132,8 +132,8 @@ fn contact_vector(student: Student, motion: &PairMotion, t: f64) -> Vec2 {
     }
 }
 
-/// Returns the speed at which the objects approach each other at time `t`, which is their relative displacement along
-/// the contact vector.
+/// Returns the dot product of the objects' relative displacement and the contact vector at time `t`. It is positive if
+/// the objects approach each other.
 fn closing_speed(motion: &PairMotion, t: f64) -> f64 {
     let relative = match motion {
         PairMotion::Particles { centers: [one, two], .. } => one.shift - two.shift,
@@ -153,7 +153,7 @@ fn contact_distance(motion: &PairMotion) -> f64 {
     }
 }
 
-/// The lists that a program reads at a wrong index for pairs of a kind.
+/// What a program reads at a wrong index for pairs of one kind.
 struct IndexSlip {
     /// Whether positions are read at the particle's number, as if each particle had one coordinate.
     uses_particle_number: bool,
@@ -192,7 +192,8 @@ fn uses_prediction(student: Student, kind: usize) -> bool {
     student.makes(all[kind])
 }
 
-/// Returns the axes for a pair. No formulas support a moving half-plane, so the axes do not move with its particle.
+/// Returns the axes in which the student computes with a pair. No formulas support a moving half-plane, so the axes do
+/// not move with its particle.
 fn pair_axes(student: Student, pair: Pair) -> Axes {
     match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
@@ -211,7 +212,9 @@ pub fn body_polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> 
     lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
-/// Checks whether a pair collides during the linear motion from `q_start` to `q_end`, and logs its polynomials.
+/// Returns the contact of a pair during the linear motion from `q_start` to `q_end`, or `None` if the pair does not
+/// collide. The polynomials are added to `log`. Fails if the guard of the log rejects a polynomial, or if the root
+/// finder would search forever.
 pub fn detect(
     world: &World,
     pair: Pair,
@@ -267,7 +270,7 @@ pub fn detect(
     Ok(Some(Contact { pair, n, time }))
 }
 
-/// Returns the time of impact. The log counts the unusual part of the search.
+/// Returns the time of impact. The steps beyond [`USUAL_SEARCH_STEPS`] are added to the log.
 fn search_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
     let found = first_time_with_steps(polynomials, &mut steps);
@@ -289,7 +292,7 @@ pub fn detect_contacts(
     Ok(contacts)
 }
 
-/// Returns whether a time of impact is within the step.
+/// Returns whether a time of impact is within the step according to this student's program.
 fn is_within_step(student: Student, motion: &PairMotion, time: f64, time_step: f64) -> bool {
     let is_of_time = |mistake: &Mistake| mistake.area() == Area::Decision && !REJECTION_MISTAKES.contains(mistake);
     match student.mistakes().find(is_of_time) {

@@ -9,7 +9,7 @@ use crate::{Area, Mistake, author::Student};
 /// The areas whose deliberate mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
-/// Divides the polynomials like this student, if at all.
+/// Divides the polynomials as this student's program does. Most programs leave them unchanged.
 pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) {
     let size: fn(&PairMotion, &[f64]) -> f64 = match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
@@ -25,8 +25,8 @@ pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) 
     }
 }
 
-/// Returns the squared length by which a pair's formulas are divided: that of the edge, otherwise that of the relative
-/// motion, along the normal if there is one.
+/// Returns the squared length by which a pair's polynomials are divided. It is that of the edge at the start, or that
+/// of the relative displacement. For a half-plane, the displacement is replaced by its dot product with the normal.
 fn length_for_pair(motion: &PairMotion) -> f64 {
     let square = |v: Vec2| v.dot(&v);
     match motion {

@@ -1,4 +1,4 @@
-//! The polynomials of correct programs: the reference's, or computed in another way (collisions.md 2).
+//! The polynomials of correct programs, which compute them like the reference or in another way (collisions.md 2).
 use fosssim_model::sim::{PairMotion, PointMotion, formulas};
 use fosssim_num::vector::{Vec2, unit};
 
@@ -109,7 +109,8 @@ mod tests {
         PointMotion { start: start.into(), shift: shift.into() }
     }
 
-    /// Returns a turning and stretching edge with integer coordinates, so that every order of evaluation is exact.
+    /// Returns a particle and an edge that turns and stretches. The coordinates are integers, so that every order of
+    /// evaluation is exact.
     fn turning() -> PairMotion {
         let ends = [body([0.0, 1.0], [2.0, 4.0]), body([6.0, 3.0], [-1.0, 2.0])];
         PairMotion::Edge { center: body([2.0, 5.0], [3.0, -7.0]), ends, radii: [1.0, 2.0] }

@@ -33,12 +33,12 @@ pub fn find_formula(sentence: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Returns whether a letter has no meaning by itself. Digits are checked before.
+/// Returns whether a word of only this letter does not name a quantity. Digits are checked before.
 const fn is_plain_letter(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
-/// Returns whether a digit at this point belongs to the number of a step, which is only a place.
+/// Returns whether a digit that follows these letters belongs to the number of a step, which is not a formula.
 fn belongs_to_step_number(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])

@@ -17,7 +17,7 @@ impl Slip {
             Self::Length(by) => power("length", by),
             Self::Iterations(count) => format!("iterations-{count}"),
             Self::Loose(digits) => format!("loose-{digits}"),
-            // Published ids stay when a variant gets another name.
+            // Published ids stay the same if a variant is renamed.
             Self::FixedNotMoved => "fixed-stand".to_owned(),
             Self::FixedVelocityZeroedFirst => "fixed-stopped".to_owned(),
             Self::FixedVelocityZeroedAfter => "fixed-halted".to_owned(),
@@ -109,7 +109,8 @@ impl Slip {
     }
 }
 
-/// Returns the description of a further power `further_power` of a factor, whose right power is `right_power`.
+/// Returns the description of a quantity that contains a further power of `factor`. The right formula contains the
+/// power `right_power`.
 fn describe_power(right_power: i8, further_power: i8, factor: &str) -> String {
     match (right_power.signum(), (right_power + further_power).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),

@@ -136,7 +136,7 @@ pub(super) const BLOCKS: &[Slip] = &[
 ];
 
 impl Slip {
-    /// Returns whether bodies without a force remain unaffected.
+    /// Returns whether a penalty force with this slip acts only on pairs on which the right force acts as well.
     pub fn keeps_distance(self) -> bool {
         use Slip::{
             Always, EndRadius, FirstRadius, Middle, Mirrored, Negated, NotNormalized, Rounded, ThicknessTwice, ToPoint,

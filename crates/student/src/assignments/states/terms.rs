@@ -325,7 +325,7 @@ impl TermRow {
 }
 
 impl Term {
-    /// Returns the quantity of which this one is a part.
+    /// Returns the quantity of which this one is a part, or `None` if it is part of no other quantity.
     const fn containing_term(self) -> Option<Self> {
         Some(match self {
             Self::SpringElastic | Self::SpringDamping => Self::Spring,

@@ -1,4 +1,4 @@
-//! Changes of a pair's formulas, as data: the student's program and the explanation are derived from one row.
+//! Changes of a pair's formulas, as data. The student's program and the explanation of its mistake use the same row.
 use super::{
     Inputs, Subject,
     formulas::{product, readings},
@@ -12,7 +12,7 @@ pub struct NamedEdit {
     pub key: &'static str,
     /// The sentence of the explanation, without its full stop.
     pub sentence: &'static str,
-    /// The exact form of the change.
+    /// The change as it appears in the formulas, such as `dx1 is 0 in the formulas`.
     pub detail: &'static str,
     /// The cost of the guess; cheaper guesses are preferred.
     pub cost: f64,
@@ -40,24 +40,26 @@ impl NamedEdit {
 /// A change of the formulas of one kind of pair.
 #[derive(Clone, Copy)]
 pub enum FormulaEdit {
-    /// The change has a name in explanations.
+    /// The change is one that explanations describe by a sentence of its own.
     Named(&'static NamedEdit),
-    /// The inputs of all formulas are changed by this function.
+    /// This function changes the inputs of all formulas.
     OtherInputs(fn(&mut Inputs)),
-    /// A term of the first reading's coefficient of `t^power`, which its letters name, has this additional factor.
+    /// One term has this additional factor. It is the term of the coefficient of `t^power` (the second field) with
+    /// exactly these letters (the third field).
     Weight(Subject, usize, &'static [usize], f64),
-    /// The letters of the formula have other values.
+    /// This function changes the values of the formula's letters.
     Letters(Subject, fn(&mut [BoundedValue], &Inputs)),
-    /// The polynomial is computed by a different formula.
+    /// This function computes the polynomial instead of the right formula.
     Formula(Subject, fn(&Inputs) -> Vec<BoundedValue>),
-    /// The coefficients of the polynomial change, highest power first.
+    /// This function changes the coefficients of the polynomial. The highest power is first.
     List(Subject, fn(&mut Vec<f64>)),
-    /// The list of all polynomials of the pair changes.
+    /// This function changes the list of all polynomials of the pair.
     Lists(fn(&mut Vec<Vec<f64>>)),
 }
 
 impl FormulaEdit {
-    /// Applies the change to the right polynomials of a pair, with the given reading of the edge's approach.
+    /// Applies the change to `lists`, which are the right polynomials of `subjects`. `approach` is the index of the
+    /// reading that the program uses for the approach of a particle and an edge.
     pub fn apply(self, inputs: &Inputs, lists: &mut Vec<Vec<f64>>, subjects: &[Subject], approach: usize) {
         let formula = |subject| &readings(subject)[if subject == Subject::EdgeApproach { approach } else { 0 }];
         let mut replace = |subject: Subject, change: &dyn Fn(&mut Vec<f64>)| {

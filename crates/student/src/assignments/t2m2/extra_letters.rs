@@ -2,7 +2,7 @@
 use super::{Inputs, Subject, formulas::Letter, inputs::square_root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
-/// Returns letters that do not belong in the formulas of a polynomial, but may be used there.
+/// Returns letters that do not belong in the formulas of a polynomial, but that students may use there.
 pub fn extra_letters(subject: Subject) -> &'static [Letter] {
     match subject {
         Subject::ParticleOverlap | Subject::ParticleApproach => PARTICLE_EXTRAS,
@@ -74,7 +74,7 @@ const ALPHA_EXTRAS: &[Letter] = &[
     letter("x3.x3", 0, |inputs| inputs.x[2].dot(inputs.x[2])),
 ];
 
-/// The letters that belong to other formulas of a particle and a half-plane.
+/// Letters that do not belong in the formulas of a particle and a half-plane, but that students may use there.
 pub const HALF_PLANE_EXTRAS: &[Letter] = &[
     letter("|n|", 0, |inputs| length(inputs.normal())),
     letter("r", 0, |inputs| inputs.radii[0]),

@@ -1,8 +1,9 @@
 //! The formulas of collisions.md 2 as data: each coefficient is a sum of weighted products of letters.
 //!
-//! The fair rules' formulas (`judge::fair::formulas`) define right polynomials, and a test compares the tables with
-//! them. As data a formula can be changed: a term dropped, a letter exchanged. The letters are those of the assignment
-//! and of the quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
+//! The fair rules' formulas (`judge::fair::formulas`) define the right polynomials, and a test compares the tables with
+//! them. The formulas are data so that they can be changed: a term can be dropped, or a letter exchanged. The letters
+//! are those of the assignment, and those of the quintic that the course supplies. The quintic's sums `k` to `o` are
+//! multiplied out here, and its `p` and `q` are called `b` and `c`.
 use super::{Inputs, Subject};
 use fosssim_num::bounded::BoundedValue;
 
@@ -45,7 +46,8 @@ impl Formula {
         self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
     }
 
-    /// Returns the coefficients, highest power first, untrimmed, from the values of the letters.
+    /// Returns the coefficients for these values of the letters. The highest power is first, and leading zeros are
+    /// kept.
     pub fn evaluate(&self, values: &[BoundedValue]) -> Vec<BoundedValue> {
         let mut coefficients = vec![BoundedValue::default(); self.degree + 1];
         for term in self.terms {
@@ -55,13 +57,13 @@ impl Formula {
         coefficients
     }
 
-    /// Returns the coefficients from the inputs.
+    /// Returns the coefficients for these inputs, like [`Formula::evaluate`].
     pub fn polynomial(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         self.evaluate(&self.letter_values(inputs))
     }
 }
 
-/// Returns the product of the letters with these indices.
+/// Returns the product of the `values` at the indices `letters`, or 1 if there are no indices.
 pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     match letters {
         [] => BoundedValue::from_exact(1.0),
@@ -69,7 +71,8 @@ pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     }
 }
 
-/// Returns the readings of one polynomial. All of them are right, and the assignment's reading is first.
+/// Returns the readings of one polynomial, which are the formulas that count as right. The assignment's reading is
+/// first.
 pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP_FORMULAS,
@@ -212,7 +215,7 @@ const SUPPLIED_LETTERS: [Letter; 10] = [
     letter("j", "d32.d21", 2, |inputs| inputs.d32().dot(inputs.d21())),
 ];
 
-/// The terms of the quintic, without the second term of t³, which has two versions.
+/// Expands to the quintic. The argument is the second term of t³, which has two versions.
 macro_rules! quintic {
     ($slip:expr) => {
         Formula {

@@ -7,9 +7,9 @@ use fosssim_num::bounded::BoundedVector;
 pub struct Ingredient {
     /// The vector's name in messages.
     pub name: &'static str,
-    /// The vector's value in a detection call.
+    /// Returns the vector for these inputs of a formula.
     pub value: fn(&Inputs) -> BoundedVector,
-    /// The cost of a guess with this vector.
+    /// The amount that this vector adds to the cost of a guess. Guesses with lower costs are preferred.
     pub cost: f64,
 }
 

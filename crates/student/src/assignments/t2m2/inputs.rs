@@ -14,11 +14,11 @@ pub struct Inputs {
     pub x: [BoundedVector; 3],
     /// The displacements of the same points. A half-plane has none.
     pub d: [BoundedVector; 3],
-    /// The radii of the particle and of the other object, which are 0 for a half-plane.
+    /// The radius of the particle, and that of the other object. A half-plane has the radius 0.
     pub radii: [BoundedValue; 2],
-    /// The value for the square of the sum of the radii.
+    /// The square of the sum of the radii.
     pub square: BoundedValue,
-    /// The value for the squared length of the normal, or 0 if there is no normal.
+    /// The squared length of the normal, or 0 if there is no normal.
     pub normal_square: BoundedValue,
 }
 

@@ -1,5 +1,5 @@
-//! Misunderstandings of formulas that have a name: right formulas with wrong inputs, such as positions at the end of
-//! the step, a missing displacement, or radii squared separately, and wrong formulas.
+//! Changes of formulas that have a name. Most are right formulas with wrong inputs, such as positions at the end of the
+//! step, a missing displacement, or radii squared separately. The others are wrong formulas.
 use super::{
     Inputs, Subject,
     edits::{
@@ -26,19 +26,19 @@ fn square(value: BoundedValue) -> BoundedValue {
     value * value
 }
 
-/// Removes one component from all vectors.
+/// Sets one component of all vectors to 0.
 fn drop_component(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
     inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::from_exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
-/// Returns the change with the given key.
+/// Returns the change with the given key, or `None` if there is none.
 pub fn find_edit(key: &str) -> Option<&'static NamedEdit> {
     NAMED_EDITS.iter().find(|edit| edit.key == key)
 }
 
-/// The table of named edits. A row has the name, the key, the kinds of pairs, the cost and the change, then the
-/// sentence, then the exact form.
+/// Declares the named changes. A row contains the name of the constant, the key, the kinds of pairs, the cost, the
+/// change, the sentence and the detail.
 macro_rules! named_edits {
     ($($name:ident $key:literal $kinds:tt $cost:literal: $edit:expr => $sentence:literal => $detail:literal;)*) => {
         $(#[doc = $sentence]
@@ -51,7 +51,7 @@ macro_rules! named_edits {
             edit: $edit,
         };)*
 
-        /// All named edits, in the order of the table.
+        /// All named changes, in the order of the table.
         pub const NAMED_EDITS: &[NamedEdit] = &[$($name,)*];
     };
 }

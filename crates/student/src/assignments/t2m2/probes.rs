@@ -13,7 +13,7 @@
 //!
 //! This module runs nothing and never judges. The scenes are the same every time.
 /// Names and texts of the scenes: polynomials first, then contacts and responses, the impulse rounds, and zones. Each
-/// is valid for both readers, and reads back unchanged.
+/// is valid for the course's reader of scenes and for ours, and stays the same if it is read and written.
 pub const PROBE_SCENES: &[(&str, &str)] = &[
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),

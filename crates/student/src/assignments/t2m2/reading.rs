@@ -5,7 +5,8 @@ use super::{
 };
 use fosssim_findings::explanation::Reading;
 
-/// Returns the letter with a given name in messages: one of the formula's own, or a foreign one that may be used there.
+/// Returns the letter with this name in messages. It is one of the formula's own letters, or one of the extra letters
+/// that students may use there. Returns `None` if no letter has the name.
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();
     own.chain(extra_letters(reading.subject)).find(|letter| letter.name == name)

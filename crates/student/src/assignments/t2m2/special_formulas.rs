@@ -14,15 +14,15 @@ pub(super) fn overlap_constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-closing.dot(closing), 2.0 * closing.dot(n), inputs.square - n.dot(n)]
 }
 
-/// Returns the approach of the particle to the point of the edge that was closest at the start, and the vector between
-/// them.
+/// Returns two vectors for the point of the edge's line that is closest at the start. They are the particle's
+/// displacement relative to this point, and the vector from the particle to the point at the start.
 fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
     let edge = inputs.x32();
     let alpha = inputs.x12().dot(edge) / edge.dot(edge);
     (inputs.d12() - alpha * inputs.d32(), alpha * edge - inputs.x12())
 }
 
-/// Returns the overlap without the edge's squared length as a factor of the radii.
+/// Returns the overlap with an edge, in which the squared radii are not multiplied by the edge's squared length.
 pub(super) fn unscaled_radius(inputs: &Inputs) -> Vec<BoundedValue> {
     let quartic = &readings(Subject::EdgeOverlap)[0];
     let mut list = quartic.polynomial(&Inputs { square: BoundedValue::from_exact(0.0), ..*inputs });
@@ -30,7 +30,7 @@ pub(super) fn unscaled_radius(inputs: &Inputs) -> Vec<BoundedValue> {
     list
 }
 
-/// Returns the polynomial alpha < 1 without the edge's squared length as a factor.
+/// Returns the polynomial alpha < 1, in which the constant 1 is not multiplied by the edge's squared length.
 pub(super) fn unscaled_alpha_below_one(inputs: &Inputs) -> Vec<BoundedValue> {
     let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
     vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::from_exact(1.0) - w0.dot(e0)]
@@ -48,7 +48,7 @@ pub(super) fn overlap_to_point(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-d.dot(d), 2.0 * x.dot(d), inputs.square - x.dot(x)]
 }
 
-/// Returns the approach to a half-plane without the speed as a factor.
+/// Returns the approach to a half-plane, in which the factor of the speed along the normal is missing.
 pub(super) fn approach_without_speed(inputs: &Inputs) -> Vec<BoundedValue> {
     let n = inputs.normal();
     vec![-inputs.d[0].dot(n), inputs.x21().dot(n)]
