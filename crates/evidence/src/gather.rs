@@ -323,8 +323,8 @@ struct PassCount<'a> {
 }
 
 impl PassCount<'_> {
-    /// Returns the number of passes that log `logged` polynomials. All passes of a step log the same number.
-    /// Returns `None` if `logged` is not a whole number of passes.
+    /// Returns the number of passes that log `logged` polynomials. All passes of a step log the same number. Returns
+    /// `None` if `logged` is not a whole number of passes.
     fn count_passes(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {

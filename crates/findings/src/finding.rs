@@ -1,4 +1,4 @@
-//! Findings, which are faults in a step and their places.
+//! Findings, which describe faults in a step and where they are.
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, StepError},
     trace::LoggedImpulse,

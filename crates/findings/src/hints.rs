@@ -36,7 +36,7 @@ impl Hints {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Reduces what was found in a trace to what this level shows: nothing at [`Hints::None`], only the places and
+    /// Returns the part of a disclosure that this level shows. This is `None` at [`Hints::None`], only the places and
     /// kinds of findings at the next two levels, and everything at [`Hints::Full`].
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
         match self {
@@ -60,7 +60,8 @@ impl Hints {
         }
     }
 
-    /// Reduces a finding to what this level shows. Parts that an earlier level has removed are not restored.
+    /// Returns the part of a finding that this level shows, or `None` if it shows nothing. Parts that an earlier level
+    /// has removed are not restored.
     pub const fn limit_finding(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
             DisclosedFinding::Full(finding) => self.disclose_finding(&finding),
@@ -68,7 +69,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that this level shows: nothing at [`Hints::None`], and no values below
+    /// Returns the part of a finding that this level shows. This is `None` at [`Hints::None`], and has no values below
     /// [`Hints::Full`].
     pub const fn disclose_finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

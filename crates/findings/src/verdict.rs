@@ -40,7 +40,7 @@ fosssim_num::closed_set! {
 }
 
 impl Verdict {
-    /// Returns the verdict with this code.
+    /// Returns the verdict with this code, or `None` if there is none.
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|verdict| verdict.code() == code)
     }

@@ -168,8 +168,7 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
 }
 
 /// Returns the number of entries that a zip archive announces. It is in the archive's end record (APPNOTE 4.3.16), or
-/// in the end record for large archives (4.3.14) if there is one.
-/// Returns `None` if the archive has no end record.
+/// in the end record for large archives (4.3.14) if there is one. Returns `None` if the archive has no end record.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     /// The size of both records, the pointer between them, and the longest comment that may follow them.
     const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;

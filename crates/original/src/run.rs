@@ -133,7 +133,8 @@ fn reject_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
     refusal.exit_code
 }
 
-/// Returns the reason why a run is not supported: it would need a window or too much memory.
+/// Returns the reason why a run is not supported, or `None` if it is supported. A run may need a window or too much
+/// memory.
 fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());

@@ -56,8 +56,8 @@ fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool)
     numbers
 }
 
-/// Returns scenes in which one feature is simplified, the collision handling first. The integrators are those of the
-/// assignment's library.
+/// Returns scenes in which one feature is simplified, the collision handling first. There is only one attempt. The
+/// integrators are those of the assignment's library.
 fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<Scene>> {
     let with = |collision: Collision| Scene { collision, ..scene.clone() };
     let mut all = Vec::new();
@@ -76,7 +76,8 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     (index == 0).then_some(all)
 }
 
-/// Returns scenes in which a body or a half-plane is at the origin and all numbers are rounded.
+/// Returns scenes in which a body or a half-plane is at the origin and all numbers are rounded. There is only one
+/// attempt.
 fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let bodies = scene.particles.iter().map(|particle| particle.position);
     let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
@@ -107,7 +108,7 @@ fn round(value: f64, decimals: usize) -> f64 {
     format!("{value:.decimals$}").parse().unwrap_or(value) + 0.0
 }
 
-/// Returns scenes in which number `index` is rounder, the roundest first.
+/// Returns scenes in which number `index` of the scene is rounder, the roundest first.
 fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
     let (kind, value) = list_numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;

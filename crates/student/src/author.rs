@@ -22,8 +22,7 @@ impl Student {
     }
 
     /// Returns the student with a further mistake. If two mistakes concern the same formula or rule, only the first is
-    /// made.
-    /// A student with [`Student::MAX_MISTAKES`] mistakes stays unchanged.
+    /// made. A student with [`Student::MAX_MISTAKES`] mistakes stays unchanged.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {

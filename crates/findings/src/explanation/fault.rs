@@ -253,7 +253,7 @@ fosssim_num::closed_set! {
     }
 }
 
-/// An error in when the geometric part runs.
+/// A wrong decision about whether the geometric part runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
     /// The geometric part does not run, although the rounds have used up their maximum number.

@@ -74,8 +74,7 @@ impl ExpectedPolynomials {
     }
 
     /// Returns the other accepted form of polynomial `number`: the mathematically right approach polynomial of a
-    /// particle and an edge.
-    /// Other polynomials have only one form.
+    /// particle and an edge. Returns `None` for other polynomials, which have only one form.
     pub fn other_form(&self, number: usize) -> Option<&[BoundedValue]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }

@@ -6,8 +6,8 @@ use fosssim_num::{
     vector::{Vec2, vector_at},
 };
 
-/// The range of ordinary states of a scene.
-/// A state is outside if it exceeds a limit by more than [`FAIR_REACH_FACTOR`].
+/// The range of ordinary states of a scene. A state is outside if it exceeds a limit by more than
+/// [`FAIR_REACH_FACTOR`].
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OrdinaryRange {
     /// The largest size of a position.

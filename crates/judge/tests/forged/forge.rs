@@ -121,7 +121,8 @@ impl Stage {
         Layout::for_scene(&self.scene).records_per_step() as usize
     }
 
-    /// Returns the correct trace with other polynomials, the same in both records of a step.
+    /// Returns the correct trace with the polynomials that `change` returns, the same in both records of a step. A
+    /// polynomial for which it returns `None` is kept.
     fn relogged(&self, change: impl Fn(usize, usize, &[f64]) -> Option<Vec<f64>>) -> Vec<u8> {
         let mut writer = Writer::new(Vec::new(), Layout::for_scene(&self.scene));
         for (number, frame) in self.frames.iter().enumerate() {
@@ -157,7 +158,7 @@ impl Stage {
     }
 }
 
-/// Returns the frames of a run that `steer` may change.
+/// Returns the frames of a run that `steer` may change, or `None` if the run has a step without a result.
 fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
     let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);

@@ -173,7 +173,7 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
 
 /// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
 /// mistakes of the catalogue come first, then the mistake that is more often the first explanation, then the earlier
-/// one.
+/// one. Returns `None` if no mistake is likely.
 pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     let all = collect_evidence(traces);
     let is_known = |word: &str| find(word).is_some();

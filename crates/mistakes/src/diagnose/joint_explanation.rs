@@ -117,6 +117,7 @@ fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
 }
 
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
+/// Returns `None` if all values are finite.
 fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|explanation| explanation.is_not_finite()));
     let agreeing =
@@ -273,8 +274,8 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
     found.iter().any(has_details)
 }
 
-/// Drops explanations that name a stage, if a mistake that only states show explains one of the traces. The faults of
-/// stages may be consequences of this mistake.
+/// Drops explanations that name a stage, if one of the traces is explained by a mistake that is visible only in states.
+/// The faults of stages may be consequences of this mistake.
 fn drop_consequences(traces: &mut Vec<OpenTrace>) {
     let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| {

@@ -76,14 +76,14 @@ impl NonFiniteSearch {
         }
     }
 
-    /// Returns the explanation of the found value.
+    /// Returns the explanation of the found value, or `None` if all values are finite.
     pub(super) fn explain(self) -> Option<Explanation> {
         self.explanation
             .map(|found| Explanation::with_topic(Explanation::NOT_FINITE, ExplanationTopic::NotFinite(found)))
     }
 }
 
-/// Returns the first value that is not finite.
+/// Returns the first value that is not finite, or `None` if all are finite.
 fn find_non_finite_value(state: &State) -> Option<f64> {
     state.positions.iter().chain(&state.velocities).copied().find(|value| !value.is_finite())
 }
@@ -120,7 +120,8 @@ fn find_in_step(
     (has_result && capture.records.is_finite()).then_some(found)
 }
 
-/// Returns the first stage with results that are not finite, with the first such value.
+/// Returns the first stage with results that are not finite, with the first such value. Returns `None` if all results
+/// are finite.
 fn find_stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
     let polynomial = find_non_finite_polynomial(&end.polynomials);
@@ -154,8 +155,8 @@ fn find_stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     }
 }
 
-/// Returns the stage in the single pass of `continuous-time`, where each contact is resolved before the next pair is
-/// checked.
+/// Returns the first stage with results that are not finite in the single pass of `continuous-time`, where each contact
+/// is resolved before the next pair is checked. Returns `None` if all polynomials and contacts are finite.
 fn find_stage_in_single_pass(
     scene: &Scene,
     end: &LenientFrame,

@@ -36,7 +36,7 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // The place is kept, but no guesses.
+        // A value that is not finite shows where the fault is, and no guess about the mistake.
         Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
         Hints::What => explanations
             .into_iter()

@@ -64,7 +64,8 @@ pub fn find_exclusion(polynomials: &[Polynomial]) -> Option<Level> {
     find_list_exclusion(polynomials.iter().map(Polynomial::coefficients))
 }
 
-/// Returns the result of [`find_exclusion`] for lists of coefficients without small leading ones.
+/// Returns the result of [`find_exclusion`] for the coefficients of polynomials. Small leading coefficients must have
+/// been removed.
 #[inline]
 pub fn find_list_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
@@ -79,7 +80,8 @@ pub fn find_list_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -
     if searches { confirm_exclusion(lists, best) } else { best }
 }
 
-/// Returns the level for lists of which at least one needs a search; `best` is the best level of the others.
+/// Returns the result of [`find_list_exclusion`] if at least one of the lists needs a search. `best` is the level that
+/// the other lists prove.
 fn confirm_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, best: Option<Level>) -> Option<Level> {
     let mut searched = lists.filter(|list| list.len() > 3);
     if !searched.clone().all(search_terminates) {

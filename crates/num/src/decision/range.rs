@@ -95,7 +95,8 @@ impl Problem {
     }
 
     /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step, and the number of
-    /// further units of the bounds for which the result stays right. A problem without polynomials never hits.
+    /// further units of the bounds for which the result stays right. Returns `None` if no polynomial proves this. A
+    /// problem without polynomials never hits.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {

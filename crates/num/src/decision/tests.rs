@@ -12,7 +12,7 @@ use proptest::test_runner::RngSeed;
 
 type Lists = Vec<Vec<f64>>;
 
-/// Polynomials; and if `tau` is at most 1, its value and whether they only touch.
+/// The polynomials of an example. If `tau` is at most 1, its value and whether the polynomials only touch follow.
 type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 
 /// Returns the decision for coefficients whose terms add up to their absolute value: bound = |value|.
@@ -193,7 +193,8 @@ impl Factored {
     }
 }
 
-/// Returns where the polynomials are all positive or touch in `(0, 1]`, by testing all cells of the grid.
+/// Returns where the polynomials are first all positive or touch in `(0, 1]`, and whether they only touch. All cells of
+/// the grid are tested. Returns `None` if there is no such place.
 fn grid_answer(polynomials: &[Factored]) -> Option<(i32, bool)> {
     let positive = |polynomial: &Factored, eighth| polynomial.is_positive(eighth);
     let open = |eighth| polynomials.iter().all(|polynomial| positive(polynomial, eighth));

@@ -36,7 +36,7 @@ const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// Reduces an angle below 1.05e8.
+/// Returns the reduced angle of an angle below 1.05e8.
 pub(super) fn reduce_small(x: f64) -> ReducedAngle {
     let shifted = multiply_add(x, QUARTERS_PER_RADIAN, ROUNDING_SHIFT);
     let quarters = shifted - ROUNDING_SHIFT;

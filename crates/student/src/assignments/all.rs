@@ -14,7 +14,7 @@ pub fn all_rows() -> impl Iterator<Item = &'static Row> {
     SHARED_ROWS.iter().chain(CATALOGUE)
 }
 
-/// Returns the row with the given id.
+/// Returns the row with the given id, or `None` if there is none.
 pub fn find(id: &str) -> Option<&'static Row> {
     all_rows().find(|row| row.id == id)
 }

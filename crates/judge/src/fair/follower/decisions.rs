@@ -106,7 +106,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the pair's first logged impulse that no decision has used yet, and marks it as used.
+    /// Returns the pair's first logged impulse that no decision has used yet, and marks it as used. Returns `None` if
+    /// there is none.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
         let index = self.contacts.indices_of(pair_key(pair)?).find(|index| !self.used_impulses[*index])?;
         self.used_impulses[index] = true;

@@ -65,7 +65,8 @@ impl<'a> Follower<'a> {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
-    /// Returns the end positions of the step that this pass provably uses, because the trace contains them.
+    /// Returns the positions at the end of the motion that this pass checks, if the trace contains them. Returns `None`
+    /// if the trace does not prove which positions the pass uses.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
         let number = self.passes[self.stage_index()];

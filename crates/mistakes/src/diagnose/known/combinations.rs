@@ -78,8 +78,8 @@ impl<'a> Search<'a> {
         self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
-    /// Adds rows to a set of empty stages until it reproduces everything.
-    /// Returns `None` if it never does, if a row can be omitted, or if one of the rows is a correct variant.
+    /// Adds rows to a set of empty stages until it reproduces everything. Returns `None` if it never does, if a row can
+    /// be omitted, or if one of the rows is a correct variant.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
@@ -145,7 +145,8 @@ impl<'a> Search<'a> {
             .or_else(|| self.find_unique_set(of_two))
     }
 
-    /// Returns the only set that reproduces everything, with the alternatives for one of its rows.
+    /// Returns the only set that reproduces everything, with the alternatives for one of its rows. Returns `None` if
+    /// there is no such set, if there are different ones, or if the work exceeds its limit.
     fn find_unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<RowCombination> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
@@ -206,7 +207,8 @@ impl<'a> Search<'a> {
         self.empty_stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
-    /// Returns the smallest set of empty stages that reproduces most. The set is empty if none helps.
+    /// Returns the smallest set of empty stages that reproduces the largest part of the steps. The set is empty if no
+    /// empty stage helps.
     fn find_empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = list_subsets(&self.empty_stage_rows());
         // One variant of an empty loop is enough, and an empty failsafe is not visible if it is never called.
@@ -246,8 +248,8 @@ impl<'a> Search<'a> {
         applicable_rows(self.scene).filter(is_candidate).collect()
     }
 
-    /// Returns the row that extends the reproduced part beyond `reached` the most, the new share, and other rows that
-    /// reach the same.
+    /// Returns the row that increases the reproduced share beyond `reached` the most, the new share, and the other rows
+    /// that reach the same share. Returns `None` if no row increases it, or if the work exceeds its limit.
     fn find_next_row(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable_rows(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));

@@ -259,7 +259,8 @@ fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     (to - from) / sides[0].min(sides[1])
 }
 
-/// Returns the distances of the particle from the edge's ends, in units of the sum of radii.
+/// Returns the distances of the particle from the edge's ends, divided by the sum of the radii. Returns `None` if the
+/// pair has no edge.
 fn distances_from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();

@@ -50,7 +50,7 @@ pub(super) fn fit_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64
     fit_scale_to_powers(expected, logged, |_| true)
 }
 
-/// Returns the scale like [`fit_scale`], from the coefficients of the given powers.
+/// Returns the same scale as [`fit_scale`], but computed only from the coefficients for whose powers `power` is true.
 pub(super) fn fit_scale_to_powers(
     expected: &[BoundedValue],
     logged: &[f64],

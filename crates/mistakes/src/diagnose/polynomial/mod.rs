@@ -257,7 +257,7 @@ fn explain_nearly_right(suspect: &WrongPolynomial) -> Option<Explanation> {
     })
 }
 
-/// Returns one explanation with all unexplained polynomials.
+/// Returns one explanation with all unexplained polynomials, or `None` if there are none.
 fn summarize_unexplained(unknown: &[WrongPolynomial]) -> Option<Explanation> {
     let first = unknown.first()?;
     let lines = |suspect: &WrongPolynomial| {

@@ -23,8 +23,9 @@ const RESOLUTION: f64 = 1e9;
 /// The cost of the guess. Every guess about a particular wrong radius costs less.
 const COST: f64 = 4.6;
 
-/// Returns the guess that only the radii are wrong. A single coefficient could be wrong for many reasons. Therefore a
-/// pair must have the same wrong radii wherever its bodies are.
+/// Returns the guess that only the radii are wrong, or `None` if they do not explain the wrong polynomials. A single
+/// coefficient could be wrong for many reasons. Therefore a pair must have the same wrong radii wherever its bodies
+/// are.
 pub(super) fn collect_candidates(study: &PolynomialStudy) -> Option<Candidate> {
     let subject = study.subject;
     if !matches!(subject, Subject::ParticleOverlap | Subject::EdgeOverlap | Subject::HalfPlaneOverlap) {

@@ -97,7 +97,8 @@ impl DesignMatrix {
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
-    /// Chooses columns by matching pursuit among the first `among` columns.
+    /// Returns columns that matching pursuit chooses among the first `among` columns, with their weights. Returns
+    /// `None` if they leave a residual, or if they are nearly dependent.
     fn find_by_pursuit(&self, target: &[f64], fits: &[f64], among: usize) -> Option<WeightedColumns> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
@@ -120,7 +121,8 @@ impl DesignMatrix {
         None
     }
 
-    /// Returns the weights of the original columns.
+    /// Returns the chosen columns with their weights before they were scaled to length 1. Returns `None` if the columns
+    /// are nearly dependent.
     fn solve(&self, chosen: &[usize], fits: &[f64]) -> Option<WeightedColumns> {
         let weights = self.weights(chosen, fits)?;
         let mut support: WeightedColumns = chosen

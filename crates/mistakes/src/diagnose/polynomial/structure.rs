@@ -149,8 +149,8 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Returns the guess that every displacement is multiplied by the same factor (because it is a velocity, for example).
-/// Each coefficient is then multiplied by a power of this factor.
+/// Returns the guess that every displacement is multiplied by the same factor, for example because it is a velocity.
+/// Each coefficient is then multiplied by a power of this factor. Returns `None` if no positive factor except 1 fits.
 fn guess_scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &PolynomialSample| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;

@@ -253,7 +253,7 @@ fn largest_component(v: Vec2) -> f64 {
     v.x.abs().max(v.y.abs())
 }
 
-/// Returns the first particle whose position or velocity differs.
+/// Returns the first particle whose position or velocity differs, or `None` if no particle does.
 pub fn find_state_difference(ours: &State, theirs: &State, tolerance: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));

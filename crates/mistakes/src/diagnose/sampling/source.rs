@@ -121,7 +121,7 @@ impl<'a> StepReader<'a> {
         Self { layout, reader, is_whole: source.is_whole, next_step: next, frames, outline }
     }
 
-    /// Reads the next step, and returns its number.
+    /// Reads the next step, and returns its number, or `None` after the last step.
     pub fn next(&mut self) -> Option<u32> {
         if let Some(step) = self.next_step.take()
             && self.read_step(step)

@@ -14,7 +14,7 @@ use fosssim_num::vector::{Vec2, length};
 use std::ops::Range;
 
 /// Returns the explanation that the pairs of the first pass are in a different order. All polynomials of the pass must
-/// be logged.
+/// be logged. Returns `None` unless most steps with wrong polynomials show this.
 pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
@@ -22,8 +22,8 @@ pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
         .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Returns the explanation that some pairs are not tested. At least one step's log must consist of the expected
-/// polynomials without those of some pairs.
+/// Returns the explanation that some pairs are not tested. Returns `None` unless the log of at least one step consists
+/// of the expected polynomials without those of some pairs.
 pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> {
     let skipped: Vec<Vec<(PairKind, f64)>> =
         facts.iter().filter(|facts| facts.is_wrong).filter_map(find_skipped_pairs).collect();
@@ -115,6 +115,7 @@ pub(super) fn explain_detection(facts: &[StepFacts]) -> Option<Explanation> {
 
 /// Returns the fault in contacts that are detected at the end of a step. `steps` contains the reference's contacts and
 /// the logged ones of each step. Only the first difference of a step counts, because later ones may follow from it.
+/// Returns `None` if there is no clear difference.
 pub(super) fn explain_overlaps(
     scene: &Scene,
     steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)],
@@ -296,7 +297,7 @@ impl ContactStage {
     }
 }
 
-/// Returns the kind that all contacts have in common.
+/// Returns the kind that all contacts have in common, or `None` if there is none.
 fn common_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)

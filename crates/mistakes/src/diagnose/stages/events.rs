@@ -183,7 +183,7 @@ impl StepFacts {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first_polynomial)
     }
 
-    /// Returns the expected and the actual mid state.
+    /// Returns the expected and the actual mid state, or `None` if one of them is missing.
     pub(super) fn mid_states(&self) -> Option<(&LoggedNumbers, &LoggedNumbers)> {
         Some((self.expected.mid.as_ref()?, self.actual.mid.as_ref()?))
     }

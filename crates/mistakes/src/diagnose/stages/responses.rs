@@ -106,7 +106,7 @@ impl Responses {
         ))
     }
 
-    /// Returns the explanation of contacts in impulse rounds that are not resolved.
+    /// Returns the explanation that impulse rounds do not resolve some contacts, or `None` if they resolve all.
     fn explain_unresolved(&self) -> Option<Explanation> {
         let fault = StageFault::Unresolved { all: self.contacts == 0 };
         (self.unresolved > 0).then(|| new_observation(fault, Vec::new(), self.unresolved))

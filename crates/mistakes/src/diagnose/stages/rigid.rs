@@ -59,7 +59,8 @@ fn polynomial_index_after(facts: &StepFacts, passes: usize) -> usize {
     facts.mid_states().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
-/// Returns the explanation of a first geometric pass that does not use the positions after the impulse rounds.
+/// Returns the explanation of a first geometric pass that does not use the positions after the impulse rounds. Returns
+/// `None` if this pass is right in all steps.
 fn explain_first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_wrong = |facts: &&&StepFacts| {
         facts.logged_passes().is_some() && facts.right_polynomials < polynomial_index_after(facts, 1)
@@ -78,7 +79,7 @@ fn explain_first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explan
 }
 
 /// Returns the explanation of a second geometric pass that uses the positions before the failsafe, although the
-/// failsafe moves a zone.
+/// failsafe moves a zone. Returns `None` unless this is so in all wrong steps.
 fn explain_positions_before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.mid_states() else { return false };
@@ -93,7 +94,7 @@ fn explain_positions_before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Opt
     (count == wrong.len()).then(|| new_observation(fault, Vec::new(), count))
 }
 
-/// Returns the fault after the first round of zones.
+/// Returns the explanation of the faults after the first round of zones.
 fn explain_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {

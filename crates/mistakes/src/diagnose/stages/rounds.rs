@@ -45,7 +45,8 @@ pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
     Some(new_observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
-/// Returns the explanation of steps that log right polynomials, but too many or too few of them.
+/// Returns the explanation of steps that log right polynomials, but too many or too few of them. Returns `None` if
+/// these are less than half of the wrong steps.
 fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen_counts: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
@@ -78,7 +79,7 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
 }
 
 /// Returns the explanation of steps whose later rounds use the integrator's positions instead of those after the first
-/// round.
+/// round. Returns `None` unless all wrong steps with several passes show this.
 fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
@@ -97,13 +98,14 @@ fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation
     (count > 0).then(|| new_observation(StageFault::RoundsOfPrediction, Vec::new(), count))
 }
 
-/// Returns the index of the first number that differs by more than round-off.
+/// Returns the index of the first number that differs by more than round-off, or `None` if no number does.
 fn find_difference(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     let within = ROUND_OFF.state.max(RATIO_TOLERANCE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
-/// Returns the explanation of steps whose polynomials are right but whose state after the loop is wrong.
+/// Returns the explanation of steps whose polynomials are right but whose state after the loop is wrong. Returns `None`
+/// if these are less than half of the wrong steps.
 fn explain_handover(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
@@ -171,7 +173,8 @@ impl SecondPass {
     }
 }
 
-/// Returns the explanation of steps whose later rounds are wrong although the first one is right.
+/// Returns the explanation of steps whose later rounds are wrong although the first one is right. Returns `None` if, in
+/// one of the steps, the first pass is wrong or nothing collides.
 fn explain_later_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();

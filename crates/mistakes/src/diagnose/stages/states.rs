@@ -92,7 +92,8 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
     Some(new_observation(StageFault::Change(wrong), details, count))
 }
 
-/// Returns the student code of the scene's milestone that changes `quantity`.
+/// Returns the student code of the scene's milestone that changes `quantity`, or `None` if no single part of the code
+/// does.
 fn find_cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
     use Quantity::{Position, Velocity};
     match (scene.assignment(), &scene.collision, scene.integrator, quantity) {

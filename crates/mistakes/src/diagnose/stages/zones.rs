@@ -269,7 +269,8 @@ impl<'a> FirstRound<'a> {
         several.map(|parts| parts.iter().map(|part| ParticleGroup::union(part)).collect()).collect()
     }
 
-    /// Returns the result of a zone that must stop, if all its particles belong together.
+    /// Returns the wrong result of a zone that must stop. The program is assumed to handle all its particles as one
+    /// zone.
     fn stop_result(&self, zone: &ParticleGroup, stopped: &State) -> ZoneResult {
         let mut free = self.middle.clone();
         move_group(self.scene, zone, false, &self.facts.before, &mut free);
