@@ -176,7 +176,7 @@ impl Display for VectorDifference {
     }
 }
 
-/// Rounds a value to a number of decimal places. A negative number means places before the decimal point.
+/// Returns a value rounded to a number of decimal places. A negative number means places before the decimal point.
 fn truncate_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     // Seventeen digits identify a double, so more are not needed.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));

@@ -43,7 +43,7 @@ pub struct CourseNote {
 }
 
 impl CourseNote {
-    /// Formats the note as one line. `text` and `link` format its text and its URL.
+    /// Returns the note as one line. `text` and `link` format its text and its URL.
     pub fn format_line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));

@@ -56,7 +56,7 @@ impl ArchiveLimits {
     /// library.
     pub const DEFAULT: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
-    /// Adjusts the limits to an archive of `packed` bytes. Unless an archive is small, it must not unpack to more than
+    /// Returns the limits for an archive of `packed` bytes. Unless an archive is small, it must not unpack to more than
     /// 200 times its size.
     fn for_size(self, packed: u64) -> Self {
         Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }

@@ -41,7 +41,7 @@ impl<'a> Budget<'a> {
         Self { scene, factor, remaining: MIN_WORK.saturating_add(at_least), min_work: at_least, is_extended: false }
     }
 
-    /// Sets the floor, which is the work that is allowed for every trace.
+    /// Returns the budget with `floor` as the work that is allowed before the work of the scene's own run is known.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
         Self { remaining: floor, min_work: 0, ..self }
     }

@@ -19,7 +19,7 @@ pub(crate) const fn logged_key(logged: &LoggedImpulse) -> PairKey {
 pub(crate) struct Contacts(Vec<(PairKey, usize)>);
 
 impl Contacts {
-    /// Sorts a record's impulses.
+    /// Sorts a record's impulses by their pairs.
     pub fn from_impulses(impulses: &[LoggedImpulse]) -> Self {
         let mut keys: Vec<_> = impulses.iter().enumerate().map(|(index, logged)| (logged_key(logged), index)).collect();
         keys.sort_unstable();

@@ -142,7 +142,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Compares the trace's next polynomial with the expected bytes `own`.
+    /// Returns the result of quickly comparing the trace's next polynomial with the expected bytes `own`.
     #[inline]
     fn compare_quickly(&self, own: &[u8]) -> QuickComparison {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
@@ -334,7 +334,8 @@ impl Observer for Tally<'_> {
         }
     }
 
-    /// Uses the mid record's state without comparing it (oracle-behavior.md 4.2).
+    /// Returns the tally itself, which replaces the state in the middle of the step with the mid record's, without
+    /// comparing it (oracle-behavior.md 4.2).
     fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
@@ -395,8 +396,8 @@ enum QuickComparison {
     Undecided,
 }
 
-/// Compares both polynomials with one division for all coefficients. Its rounding differs from the original's by less
-/// than a hundredth of the bound.
+/// Returns the result of comparing both polynomials with one division for all coefficients. Its rounding differs from
+/// the original's by less than a hundredth of the bound.
 #[inline]
 fn compare_quickly<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> QuickComparison {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())

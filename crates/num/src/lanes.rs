@@ -106,7 +106,7 @@ impl Instructions {
         Self(Arch::Scalar)
     }
 
-    /// Performs the work with the instructions.
+    /// Runs the work with these instructions, and returns its result.
     #[inline]
     pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         self.0.dispatch(DispatchedWork(work))
@@ -117,8 +117,9 @@ impl Instructions {
 pub trait LaneWork {
     /// The type of the result.
     type Output;
-    /// Performs the work. Its callers are compiled once for each set of instructions. It must therefore be inlined,
-    /// like everything that it calls. It must not use closures, because these would be compiled for other instructions.
+    /// Runs the work, and returns its result. Callers of this function are compiled once for each set of instructions.
+    /// It must therefore be inlined, like everything that it calls. It must not use closures, because these would be
+    /// compiled for other instructions.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 

@@ -51,9 +51,9 @@ impl schemars::JsonSchema for WrittenNumber {
 pub trait WrittenNumbers: Sized {
     /// The value's serialized form.
     type Form: Serialize + DeserializeOwned;
-    /// Converts the value to its serialized form.
+    /// Returns the value's serialized form.
     fn write(&self) -> Self::Form;
-    /// Converts the serialized form to the value.
+    /// Returns the value that has this serialized form.
     fn read(form: Self::Form) -> Self;
 }
 

@@ -191,7 +191,7 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// Groups the claims by polynomial. For each claim, the result has its guess or known mistake, and the whole word.
+    /// Returns the claims, grouped by polynomial. Each claim is listed with its guess or known mistake, and as a whole.
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
         // A guess that reproduces only a part explains no polynomial completely.

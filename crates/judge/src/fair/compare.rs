@@ -78,7 +78,8 @@ impl Similarity {
     /// The placeholder for polynomials that are not compared.
     pub const NOT_COMPARED: Self = Self { sum: 0.0, logged_sum: 0.0, scale: 0.0, worst_deviation: 0.0 };
 
-    /// Compares the expected coefficients `own` with `logged`, which has the same length.
+    /// Returns the sums, the factor and the largest deviation of the coefficients `logged` from the expected
+    /// coefficients `own`. Both lists have the same length.
     #[inline(always)]
     pub fn measure(own: &[f64], logged: &[f64]) -> Self {
         // The compiler unrolls loops of a known length.

@@ -36,8 +36,8 @@ fn evaluate(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Evaluates like [`evaluate`], with a tolerance that also covers leading coefficients that the course's library drops
-/// if the program multiplies its polynomials by a factor near 1.
+/// Returns a polynomial's value and its tolerance like [`evaluate`]. The tolerance also covers leading coefficients
+/// that the course's library drops if the program multiplies its polynomials by a factor near 1.
 fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT).sum();

@@ -79,7 +79,7 @@ impl ExpectedPolynomials {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }
 
-    /// Replaces the course's approach polynomial with the right one.
+    /// Returns the polynomials with the right approach polynomial of a particle and an edge instead of the course's.
     pub fn with_right_approach(mut self) -> Self {
         if let Some(right) = self.right_approach {
             self.polynomials[3] = right;
@@ -134,8 +134,8 @@ impl BoundedPairMotion {
         }
     }
 
-    /// Widens the motion by possible deviations of end positions. `deviations` contains two coordinates for each
-    /// particle of the scene, in the scene's units.
+    /// Returns the motion with bounds that also cover deviations of the end positions of `particles`. `deviations`
+    /// contains two coordinates for each particle of the scene, in the scene's units.
     pub fn widen(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };

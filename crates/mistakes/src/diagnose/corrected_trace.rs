@@ -15,10 +15,11 @@ pub struct CorrectedTrace {
     pub agreed_count: usize,
 }
 
-/// Replaces a trace's explanations by those of all traces together ([`explain_together`](super::explain_together)), if
-/// one of these applies to the trace. The counts and the example of the trace are kept. If none applies, the
-/// explanations that are `refuted` are removed. If all traces together leave a polynomial unexplained, the trace's
-/// guess about it is removed, because other traces contradict it.
+/// Returns the explanations of one trace, corrected by those of all traces together
+/// ([`explain_together`](super::explain_together)). If one of `likely` applies to the trace, it replaces the trace's
+/// own explanations `own`, but the counts and the example of the trace are kept. If none applies, the explanations that
+/// are `refuted` are removed. If all traces together leave a polynomial unexplained, the trace's guess about it is
+/// removed, because other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
     let of_all = likely

@@ -35,12 +35,12 @@ pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))
 }
 
-/// Explains the kept part of a trace, like [`explain`].
+/// Returns the explanations of the kept part of a trace, like [`explain`].
 pub fn explain_kept_trace(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
-/// Explains a trace like [`explain`], with records from any source.
+/// Returns the explanations of a trace like [`explain`], with records from any source.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::for_scene(scene).has_polynomials && pairs(scene).count() > MAX_PAIRS {
         return non_finite::explain_source(scene, source);

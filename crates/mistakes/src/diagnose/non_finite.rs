@@ -22,7 +22,8 @@ pub fn explain_non_finite_value(scene: &Scene, trace: &KeptTrace) -> Vec<Explana
     explain_source(scene, trace.into())
 }
 
-/// Explains the first value that is not finite, like [`explain_non_finite_value`], with records from any source.
+/// Returns the explanation of the first value that is not finite, like [`explain_non_finite_value`], with records from
+/// any source.
 pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), NonFiniteSearch::default());

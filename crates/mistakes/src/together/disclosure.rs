@@ -22,17 +22,17 @@ pub fn limit_result(hints: Hints, result: &mut SceneResult) {
     result.card.clone_from(&result.card_for_students);
 }
 
-/// Limits a smallest scene to a hint level. At [`Hints::None`] nothing is left, and the result is `None`.
+/// Returns the part of a smallest scene that a hint level shows. At [`Hints::None`] this is `None`.
 pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = limit_explanations(hints, std::mem::take(&mut small.explanations));
     small.limit_to_hints(hints);
     (hints > Hints::None).then_some(small)
 }
 
-/// Limits explanations to a hint level. Below [`Hints::What`] only the first value that is not finite is left, if there
-/// is one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each explanation keeps
-/// the known mistakes that cannot be distinguished from it, but loses its exact form and its example. These need
-/// [`Hints::Full`].
+/// Returns the part of explanations that a hint level shows. At [`Hints::None`] this is nothing. At [`Hints::Where`] it
+/// is only the explanation of the first value that is not finite, if there is one ([`Explanation::is_not_finite`]). At
+/// [`Hints::What`] each explanation keeps the known mistakes that cannot be distinguished from it, but loses its exact
+/// form and its example. These need [`Hints::Full`].
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),

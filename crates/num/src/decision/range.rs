@@ -239,8 +239,8 @@ impl ExactPolynomial {
         stretched.compute_bernstein()
     }
 
-    /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times
-    /// entry i.
+    /// Returns the polynomial's coefficients in a Bernstein basis. Entry k is the sum of (k over i) times coefficient i
+    /// times reciprocal i, added up as in Pascal's triangle.
     #[inline(always)]
     fn convert<const LENGTH: usize>(&self, reciprocals: [f64; LENGTH]) -> [f64; MAX_COEFFICIENTS] {
         let mut values = [0.0; MAX_COEFFICIENTS];

@@ -48,7 +48,7 @@ pub(super) fn reduce_small(x: f64) -> ReducedAngle {
     ReducedAngle { quarters: shifted.to_bits() as u32 & 3, angle, rest }
 }
 
-/// Reduces any finite angle of at least 1.05e8.
+/// Returns the reduced angle of any finite angle of at least 1.05e8.
 pub(super) fn reduce_large(x: f64) -> ReducedAngle {
     let x = x * power_of_two(-600);
     let scaled = x * SPLIT_FACTOR;

@@ -1,8 +1,8 @@
 //! Correct programs that compute coefficients indirectly: through the Bernstein basis, or from values at several times.
 use fosssim_model::sim::PairMotion;
 
-/// Converts the coefficients of a polynomial (highest power first) to the Bernstein basis over the step and back. The
-/// result differs from `list` only by round-off.
+/// Returns the coefficients of a polynomial (highest power first) after a conversion to the Bernstein basis over the
+/// step and back. The result differs from `list` only by round-off.
 pub fn convert_through_bernstein(list: &[f64]) -> Vec<f64> {
     let degree = list.len() - 1;
     let power = |k: usize| list[degree - k];

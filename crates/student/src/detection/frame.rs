@@ -37,7 +37,7 @@ impl Axes {
         }
     }
 
-    /// Converts a point of the scene to these axes. `particle` is the position of the pair's first particle at the same
+    /// Returns a point of the scene in these axes. `particle` is the position of the pair's first particle at the same
     /// time.
     pub fn transform_point(self, point: Vec2, particle: Vec2) -> Vec2 {
         match self {
@@ -48,7 +48,7 @@ impl Axes {
         }
     }
 
-    /// Converts a difference of points to these axes.
+    /// Returns a difference of points of the scene in these axes.
     pub fn transform_direction(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = ROTATION;
         match self {
@@ -57,7 +57,7 @@ impl Axes {
         }
     }
 
-    /// Converts a difference of points back to the scene's axes.
+    /// Returns a difference of points in these axes in the scene's axes.
     pub fn transform_back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = ROTATION;
         match self {

@@ -153,7 +153,7 @@ fn contact_distance(motion: &PairMotion) -> f64 {
     }
 }
 
-/// What a program reads at a wrong index for pairs of one kind.
+/// The slips in the indices at which a program reads the data of a pair, for pairs of one kind.
 struct IndexSlip {
     /// Whether positions are read at the particle's number, as if each particle had one coordinate.
     uses_particle_number: bool,

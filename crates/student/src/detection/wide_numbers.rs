@@ -32,7 +32,7 @@ fn quick_two_sum(a: f64, b: f64) -> WideNumber {
     WideNumber { high, low: b - (high - a) }
 }
 
-/// Splits a double into two numbers with about half of its digits each. Their sum is the double.
+/// Returns two numbers with about half of the double's digits each. Their sum is the double.
 fn split(a: f64) -> (f64, f64) {
     let shifted = 134_217_729.0 * a;
     let high = shifted - (shifted - a);

@@ -35,7 +35,7 @@ use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
 use trials::Trials;
 
-/// Searches the catalogue for the mistake that explains a trace.
+/// Returns the mistakes of the catalogue that explain a trace.
 ///
 /// The result is empty if all steps are right, if no mistake reproduces at least half of the wrong steps, or if a
 /// correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three mistakes that

@@ -248,8 +248,8 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// Counts the samples in which each coefficient differs, one line per different coefficient, with `subject` as the
-    /// polynomial.
+    /// Returns the number of samples in which each coefficient differs, as one line for each coefficient that ever
+    /// differs. The lines name `subject` as the polynomial.
     pub fn count_differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&PolynomialSample, power: usize| {
             !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
@@ -307,7 +307,8 @@ fn accept_small_scales(cases: &mut [PolynomialSample]) {
     }
 }
 
-/// Keeps at most [`MAX_CASES`] samples in their order, and prefers wrong ones.
+/// Returns at most [`MAX_CASES`] of the samples, in their order. At most three quarters of them are wrong if there are
+/// more samples.
 fn thin_out(cases: Vec<PolynomialSample>) -> Vec<PolynomialSample> {
     if cases.len() <= MAX_CASES {
         return cases;

@@ -32,7 +32,7 @@ pub struct TraceSamples<'a> {
     pub detections: Vec<Sample>,
 }
 
-/// Reads a trace once, and keeps what explanations need.
+/// Reads a trace once, and returns what explanations need.
 pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a> {
     let (mut steps, mut reference) = (StepReader::new(scene, source), Reference::new(scene));
     let (mut first, mut scanner, mut detections) =

@@ -138,7 +138,7 @@ impl IntegerPolynomial {
         Self::new(product)
     }
 
-    /// Divides by the greatest common divisor of the coefficients.
+    /// Returns the polynomial divided by the greatest common divisor of its coefficients.
     fn primitive_part(self) -> Self {
         let content = self.0.iter().fold(BigInt::ZERO, |divisor, value| common_divisor(divisor, value.clone()));
         if content.sign() == Sign::NoSign || content == BigInt::from(1) {
