@@ -18,7 +18,7 @@ pub struct InspectedPair {
 }
 
 /// Inspects all detection calls of a pair in a step that starts from `before`. The step continues with the trace's
-/// `records`, which are the state of its mid record (used in `hybrid`) and the polynomials of its end record; without
+/// `records`, which are the state of its mid record (used in `hybrid`) and the polynomials of its end record. Without
 /// records, it continues like the reference.
 pub fn inspect(
     scene: &Scene,

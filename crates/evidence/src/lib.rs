@@ -1,5 +1,5 @@
-//! The data that a viewer shows of a judged trace: both motions, the reference's events in each step from the trace's
-//! own state, and the detection calls of findings.
+//! The data that a viewer shows of a judged trace. They contain both motions, the reference's events in each step from
+//! the trace's own state, and the detection calls of findings.
 //!
 //! This crate judges nothing; its caller provides the wrong steps ([`StepRulings`]). It reads the trace again and keeps
 //! at most [`MAX_NUMBERS`] numbers, so the length of the trace is not limited. A step starts from the trace's own state

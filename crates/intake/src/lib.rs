@@ -1,9 +1,9 @@
 //! Checks files that the command line and the service receive. It recognizes kinds of files, and unpacks archives of
 //! sources and of suites.
 //!
-//! Archives are rejected if they contain entries that usual packers do not create: paths that leave the folder, links,
-//! devices, two files with the same name, or more bytes than allowed. Files that file managers and build tools create
-//! automatically are skipped.
+//! Archives are rejected if they contain entries that usual packers do not create, such as paths that leave the folder,
+//! links, devices, or two files with the same name. They are also rejected if they contain more bytes than allowed.
+//! Files that file managers and build tools create automatically are skipped.
 //!
 //! ```
 //! use fosssim_intake::{FileKind, describe};

@@ -6,12 +6,12 @@
 //! `rounded` (with an additional rounding error in every third coefficient), `trace` (each scene is followed by the
 //! file of a trace, judged by both books).
 //!
-//! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
-//! changes, and compares them with the counts in `instructions.txt`; with `store` the counts are written there.
+//! `... --bench inside -- instructions` counts instructions under callgrind, and compares them with the counts in
+//! `instructions.txt`. No other load on the machine changes these counts. With `store` they are written to the file.
 //!
-//! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions
-//! of a ball and step of a penalty scene from 100 to 100,000 balls, `... -- hits` those of scenes with many hits in a
-//! step of `continuous-time`.
+//! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles. `... -- crowd` shows the
+//! instructions of a ball and step of a penalty scene from 100 to 100,000 balls. `... -- hits` shows the instructions
+//! of scenes with many hits in a step of `continuous-time`.
 #![forbid(unsafe_code)]
 use fosssim_judge::replay::{self, Options};
 use fosssim_model::{

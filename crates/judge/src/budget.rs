@@ -87,9 +87,9 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// Returns a lower bound for the work of the scene's own run: a detection pass and an iteration of Newton's method for
-/// each step, if there are any. Nearly all traces stay below the allowed multiple of this bound, so the scene need not
-/// be run.
+/// Returns a lower bound for the work of the scene's own run. In each step, it counts one detection pass and one
+/// iteration of Newton's method if the scene uses them. Nearly all traces stay below the allowed multiple of this
+/// bound, so the scene need not be run.
 fn min_scene_work(scene: &Scene) -> u64 {
     let pass = match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,

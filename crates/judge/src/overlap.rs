@@ -14,8 +14,9 @@ use fosssim_num::vector::{Vec2, length, vector_at};
 pub struct OverlapCheck {
     /// The pair, with its motion within the step.
     pub motion: PairMotion,
-    /// The velocities of its bodies at the check, after the responses to earlier pairs: that of the particle, and that
-    /// of the second particle or of the nearest point of the edge. The velocity of a half-plane is zero.
+    /// The velocities of its bodies at the check, after the responses to earlier pairs. The first is that of the
+    /// particle, and the second is that of the second particle or of the nearest point of the edge. The velocity of a
+    /// half-plane is zero.
     pub velocities: [Vec2; 2],
     /// The position of the nearest point on an edge, from 0 at its first end to 1 at its second.
     pub alpha: Option<f64>,

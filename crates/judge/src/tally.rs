@@ -1,8 +1,8 @@
 //! Compares one step of the trace with the reference while the reference computes it.
 //!
-//! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the
-//! end of its pass, so only one pass of the reference's log is stored. Findings about polynomials count only if the two
-//! lists have the same length, which is known at the end of the step (oracle-behavior.md 6.2).
+//! [`Tally`] is the observer of that step. It compares every polynomial with the next one of the trace's list at the
+//! end of its pass. Therefore only one pass of the reference's log is stored. Findings about polynomials count only if
+//! the two lists have the same length, which is known at the end of the step (oracle-behavior.md 6.2).
 mod pending;
 
 use pending::PendingFindings;
@@ -27,8 +27,8 @@ use fosssim_num::{
     vector::{has_same_bits, length, vector_at},
 };
 
-/// Below this sum of absolute values, identical coefficients always pass the original's comparison, because `(O*s)/s`
-/// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
+/// Below this sum of absolute values, identical coefficients always pass the original's comparison. `(O*s)/s` then
+/// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5. This is less than a quarter of
 /// [`PARITY_COEFFICIENT_DIFFERENCE`]. Above it the original may reject even its own output (oracle-behavior.md 8.10),
 /// so the comparison is made as it is written.
 const SAFE_SUM: f64 = 1e5;

@@ -1,8 +1,8 @@
 //! The first time from which a list of polynomials is positive.
 //!
-//! Part II of root-finder.md: the zeros cut the line into gaps, one sample per gap shows whether the polynomial is
-//! positive there, and the sets of all polynomials are intersected. As in the original, the samples are trusted:
-//! rounding may decide a sample, and zeros that the root finder did not find are simply missing.
+//! This is part II of root-finder.md. The zeros cut the line into gaps, and one sample per gap shows whether the
+//! polynomial is positive there. The sets of all polynomials are then intersected. As in the original, the samples are
+//! trusted. Rounding may decide a sample, and zeros that the root finder did not find are simply missing.
 use super::{
     interval::{Interval, Intervals},
     polynomial::{Polynomial, evaluate},

@@ -82,7 +82,7 @@ impl Default for Instructions {
     }
 }
 
-/// The minimum number of pairs, in all steps of a scene, for which wide instructions are worth a check; a virtual
+/// The minimum number of pairs, in all steps of a scene, for which wide instructions are worth a check. A virtual
 /// machine may take 0.1 ms to list its processor's instructions.
 const MIN_PAIRS: u64 = 1000;
 

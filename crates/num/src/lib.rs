@@ -1,11 +1,11 @@
-//! Arithmetic whose bits matter: polynomials, the Jenkins-Traub root finder, first satisfaction times, certificates
-//! that make a root search unnecessary, decisions that are valid with any rounding, the linear solver of the implicit
-//! integrators, elementary functions, and numbers as C++ prints them.
+//! Arithmetic whose bits matter. The crate contains polynomials, the Jenkins-Traub root finder and first satisfaction
+//! times. Certificates make a root search unnecessary, and decisions are valid with any rounding. Further modules
+//! contain the linear solver of the implicit integrators, elementary functions, and numbers as C++ prints them.
 //!
-//! This crate uses no other crate of the project, does not print, does not use files or processes, and does not
-//! allocate in the functions that run per pair (except the integers of [`decision::exact`], the last resort). The
-//! mathematics is that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493,
-//! ACM TOMS 1, 1975), evaluated in the original's order.
+//! This crate uses no other crate of the project. It does not print, and uses no files or processes. Functions that run
+//! per pair do not allocate, except for the integers of [`decision::exact`], which is the last resort. The mathematics
+//! is that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1,
+//! 1975), evaluated in the original's order.
 //!
 //! ```
 //! use fosssim_num::{first_time::first_time, polynomial::Polynomial};

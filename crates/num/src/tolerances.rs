@@ -75,17 +75,17 @@ pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Certificate: the root finder's search is known to end if all coefficients are zero or between this value and
-/// [`SEARCH_MAX_COEFFICIENT`]; with subnormal coefficients, some searches do not end (root-finder.md 9.5). Parabolas
+/// [`SEARCH_MAX_COEFFICIENT`]. With subnormal coefficients, some searches do not end (root-finder.md 9.5). Parabolas
 /// without a real zero have a leading coefficient of this size.
 pub const SEARCH_MIN_COEFFICIENT: f64 = 1e-150;
 
 /// Certificate: the upper end of the range that begins at [`SEARCH_MIN_COEFFICIENT`].
 pub const SEARCH_MAX_COEFFICIENT: f64 = 1e150;
 
-/// Detection in lanes: positions, displacements, radii, half-planes' points and normals with absolute values up to this
-/// limit (scene length unit) give no coefficient that is NaN or infinite, because coefficients are products of at most
-/// six inputs; with larger inputs, pairs are computed individually. With a much larger limit, the sign of a NaN would
-/// depend on the grouping of pairs.
+/// Detection in lanes: inputs with absolute values up to this limit (scene length unit) give no coefficient that is NaN
+/// or infinite, because coefficients are products of at most six inputs. The inputs are positions, displacements,
+/// radii, and half-planes' points and normals. With larger inputs, pairs are computed individually. With a much larger
+/// limit, the sign of a NaN would depend on the grouping of pairs.
 pub const LANES_MAX_INPUT: f64 = 1e48;
 
 /// Fair: a correct program may deviate by this many units of the running error bound (numerics.md 2; LAPACK's test
@@ -115,19 +115,19 @@ pub const FAIR_TIME_SHARE: f64 = 1.0 / (1_u64 << 40) as f64;
 /// position. With larger values, the responses at the two times differ by more than round-off.
 pub const FAIR_MOMENT_ROUNDINGS: f64 = 8.0;
 
-/// Fair: leading coefficients below this many times [`MIN_LEADING_COEFFICIENT`] may be lost without a finding, because
-/// factors near 1 move other coefficients across that bound than the course's formulas do. With larger values, factors
+/// Fair: leading coefficients below this many times [`MIN_LEADING_COEFFICIENT`] may be lost without a finding. A
+/// program with a factor near 1 may lose other coefficients than the course's formulas do. With larger values, factors
 /// could change times of impact.
 pub const FAIR_LOSS_FACTOR: f64 = 4.0;
 
-/// Fair: factors are outliers, which prove nothing about missing coefficients, if their binary exponent differs from
-/// the mean of their kind by more than this many standard deviations. By this rule, a different factor that fewer than
-/// one polynomial in ten shows is an outlier. With larger values few polynomials could prove many; with smaller ones
-/// programs with several factors would be rejected.
+/// Fair: a factor is an outlier if its binary exponent differs from the mean of its kind by more than this many
+/// standard deviations. Outliers prove nothing about missing coefficients. By this rule, a different factor that fewer
+/// than one polynomial in ten shows is an outlier. With larger values few polynomials could prove many; with smaller
+/// ones programs with several factors would be rejected.
 pub const FAIR_OUTLIER_DEVIATIONS: f64 = 3.0;
 
 /// Fair: a state cannot be judged if a position or velocity is more than this many times as large as in the reference's
-/// own run, or if the extent of all particles together is more than this many times smaller.
+/// own run. The same holds if the extent of all particles together is more than this many times smaller.
 pub const FAIR_REACH_FACTOR: f64 = (1_u64 << 20) as f64;
 
 /// Fair: a state may deviate by this many times the step's own sensitivity to rounding errors of its inputs.
@@ -149,8 +149,8 @@ pub const KNOWN_DROPPED_COEFFICIENT: f64 = 2.0 * MIN_LEADING_COEFFICIENT;
 /// 1.
 pub const KNOWN_STATE_ERROR: f64 = 1e-10;
 
-/// Known mistakes: the tolerance of [`KNOWN_STATE_ERROR`] for implicit steps, where Newton's method stops so near to
-/// the same state that a wrong derivative shows only in its last digits.
+/// Known mistakes: the tolerance that replaces [`KNOWN_STATE_ERROR`] for implicit steps. Newton's method stops so near
+/// to the same state that a wrong derivative shows only in the last digits.
 pub const KNOWN_NEWTON_STATE_ERROR: f64 = 2e-14;
 
 /// Known mistakes: a re-simulated contact vector may differ by this share of its length plus 1.

@@ -1,7 +1,7 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
 //! The vectors are nalgebra's, whose sums, products and inner product are rounded as the specification requires
-//! (`simulation.md`, conventions). **No code divides or normalizes them with nalgebra's operations**: the original
+//! (`simulation.md`, conventions). **No code divides or normalizes them with nalgebra's operations.** The original
 //! multiplies by the reciprocal where a library divides each component. Use [`divide`] and [`unit`](fn@unit); the lints
 //! of the numeric crates enforce this.
 use nalgebra::{MatrixView2xX, Vector2};

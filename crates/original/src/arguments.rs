@@ -1,6 +1,6 @@
 //! The original's command line (oracle-behavior.md 1): the parsed arguments, or the message and exit code of an error.
 //!
-//! Words are bytes, so file names need not be UTF-8. The rules are those of the original's argument library: value and
+//! Words are bytes, so file names need not be UTF-8. The rules are those of the original's argument library. Value and
 //! flag are separate words, the first invalid word ends the program, and `--help` and `--version` take effect in order.
 use crate::{
     flags::{FLAGS, Flag},

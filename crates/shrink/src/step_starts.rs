@@ -11,9 +11,10 @@ use fosssim_num::vector::vector_at;
 /// together with others.
 const MAX_STEPS: usize = 6;
 
-/// Returns scenes to begin with, each with its wrong step, in the order in which they are tried: each of these wrong
-/// steps alone, then the first one with the step before it, then the whole run up to it. `trace` is the program's trace
-/// of the scene; steps count from 1 and ascend. Parts that only a display uses are removed.
+/// Returns scenes to begin with, each with its wrong step, in the order in which they are tried. First is each of the
+/// wrong steps alone. Then comes the first wrong step with the step before it, and finally the whole run up to it.
+/// `trace` is the program's trace of the scene; steps count from 1 and ascend. Parts that only a display uses are
+/// removed.
 pub fn step_starts(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
     let wrong = &wrong[..wrong.len().min(MAX_STEPS)];
     let (Some(&first), Some(&last)) = (wrong.first(), wrong.last()) else { return Vec::new() };

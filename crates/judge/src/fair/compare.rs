@@ -158,7 +158,7 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 /// Returns whether a logged polynomial is provably wrong with every factor, without a search for the best factor.
 /// If the result is `false`, the polynomial may be right or wrong.
 ///
-/// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
+/// A polynomial that [`compare`] accepts stays near the expected one times its factor at any time within the step. It
 /// deviates by less than `MAX_DEVIATION` units of all bounds together. Together, the tolerances of six coefficients are
 /// at most `2 FAIR_UNITS + 6 FAIR_NORM_UNITS` units of the sum of bounds. If values are compared instead, their
 /// tolerances are smaller. Each time therefore allows an interval of factors. If two of these intervals are disjoint,
@@ -333,7 +333,7 @@ fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<
 }
 
 /// Returns the allowed deviation of a coefficient, in units of the roundoff. The bound counts twice, because both sides
-/// are rounded. A coefficient that is small compared with the others may have the rounding errors of all of them: some
+/// are rounded. A coefficient that is small compared with the others may have the rounding errors of all of them. Some
 /// correct programs interpolate polynomials, and the resulting errors change no decision on [0, 1].
 fn allowed_units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
@@ -412,9 +412,9 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 }
 
 /// Returns the smallest factor above 1 with which a polynomial would be right, if the expected polynomial is zero
-/// except for round-off. Returns `None` if the polynomial needs no factor, if the expected polynomial is larger than
-/// round-off, or if the largest absolute coefficient or the sum of squares is 1. Some programs scale their polynomials
-/// to this size.
+/// except for round-off. Returns `None` if the polynomial needs no factor, or if the expected polynomial is larger than
+/// round-off. The result is also `None` if the largest absolute coefficient or the sum of squares is 1. Some programs
+/// scale their polynomials to this size.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
     let norm = bound_sum(expected);
     if !(norm > 0.0 && norm.is_finite() && is_round_off(expected)) {

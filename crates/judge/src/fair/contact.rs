@@ -134,7 +134,7 @@ pub(super) fn compare_possible_hit(
 }
 
 /// Returns the contact normal at a time, and its tolerance. The tolerance is for the whole vector: a program with
-/// rotated axes spreads the round-off of one component over both. The assignment requires the shortest vector: if the
+/// rotated axes spreads the round-off of one component over both. The assignment requires the shortest vector. If the
 /// round-off of the time leads beyond an edge's end, the vector to the end is as right as the vector to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);

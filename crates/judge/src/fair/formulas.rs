@@ -165,9 +165,9 @@ impl BoundedPairMotion {
         matches!(self, Self::Edge(..))
     }
 
-    /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are integers below two to
-    /// the power `bits`, times one power of two. Polynomials of a particle and a moving edge have higher degrees, and
-    /// their zeros are never exact.
+    /// Returns whether every way to evaluate the formulas of a parabola is exact. This is so if all inputs are integers
+    /// below two to the power `bits`, times one power of two. Polynomials of a particle and a moving edge have higher
+    /// degrees, and their zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
         let parts = |v: BoundedVector| [v.x.value, v.y.value];
         match self {

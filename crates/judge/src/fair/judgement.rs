@@ -214,8 +214,8 @@ fn is_constant([least, greatest]: [f64; 2]) -> bool {
     greatest - least <= 1e-9 * least
 }
 
-/// Returns whether a finding may be a consequence of the finding about a polynomial: it is about a later step, or about
-/// a decision in the same step.
+/// Returns whether a finding may be a consequence of the finding about a polynomial. Such a finding is about a later
+/// step, or about a decision in the same step.
 fn is_consequence(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision

@@ -3,16 +3,16 @@
 //!
 //! It judges one step as follows:
 //!
-//! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
-//!    finds the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric
-//!    part at its mid record. A mistake is therefore counted once, at the stage where it is made. If the time of impact
-//!    of its polynomials is the reference's except for round-off, the reference's time is used. If right polynomials
-//!    lead the root finder to a decision that differs from the reference's, both decisions are accepted.
+//! 1. It rebuilds the log that the submission should have written from *its own* states. It follows the submission: it
+//!    finds the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric part
+//!    at its mid record. A mistake is therefore counted once, at the stage where it is made. If the time of impact of
+//!    its polynomials is the reference's except for round-off, the reference's time is used. If right polynomials lead
+//!    the root finder to a decision that differs from the reference's, both decisions are accepted.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
 //!    bound. A small leading coefficient may be missing, because the course's library drops it. The factor must make it
 //!    small: either two coefficients show this factor, or it is usual in the trace, which is known only at the trace's
 //!    end. NaN fails.
-//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by
+//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size. If that is too little, they may be off by
 //!    [`FAIR_SENSITIVITY_FACTOR`] times the effect of such roundings of the step's input on its result.
 //! 4. A decision that such roundings can change is borderline: it is followed and counted as borderline, never as
 //!    wrong. However, the normal and the time of such a collision must be right. Coefficients that were lost because of

@@ -1,5 +1,5 @@
-//! Collects the evidence of one logged polynomial: the factor and the form of a right one, the fault of a wrong one,
-//! and everything that depends on the factors of other polynomials.
+//! Collects the evidence of one logged polynomial. A right polynomial shows a factor and a form, and a wrong one has a
+//! fault. Some evidence depends on the factors of other polynomials.
 use super::{
     compare::{
         Match, Mismatch, claimed_factors, compare, compare_with_one, is_wrong_with_every_factor, possible_factors,

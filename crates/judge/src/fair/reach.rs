@@ -1,7 +1,7 @@
 //! Finds the states of a trace that have no meaningful continuation, by comparison with the reference's own run.
 //!
 //! Steps are judged from the trace's own states. A single wrong step can therefore lead to a state in which no mistake
-//! can show: numbers that are not finite, that are so large that everything else is round-off, or that are all equal.
+//! can show. Numbers of such a state are not finite, are so large that everything else is round-off, or are all equal.
 //! Such steps are never right, unless the reference itself reaches such a state from the scene's start.
 use super::{
     context::{Context, Records},

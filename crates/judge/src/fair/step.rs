@@ -1,5 +1,5 @@
-//! Judges one step by the fair rules: follows it, measures its sensitivity if something differs, and tries the
-//! alternatives of borderline decisions that the trace does not show.
+//! Judges one step by the fair rules. The step is followed, and its sensitivity is measured if something differs. For
+//! borderline decisions that the trace does not show, both alternatives are tried.
 use super::{
     contact::{self, Tolerances},
     context::{Context, Records},

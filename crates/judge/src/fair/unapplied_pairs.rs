@@ -1,8 +1,8 @@
 //! Finds pairs whose penalty force a step omits or applies twice.
 //!
 //! The force of a pair changes the velocities of its particles by known amounts. Where velocities are wrong, the
-//! amounts are fitted to the differences. A pair is named only if no other choice of pairs fits, and the differences of
-//! all its particles are round-off after the pair's force is subtracted or added.
+//! amounts are fitted to the differences. A pair is named only if no other choice of pairs fits. The differences of all
+//! its particles must also be round-off after the pair's force is subtracted or added.
 //!
 //! In a contest with a layer the original leaves out bodies whose layers alone are near (simulation.md 3.1). A program
 //! may include them, because the contest is about layers without thickness, so such a pair is never named.

@@ -199,8 +199,8 @@ pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     Some(Explanation { same_as, ..merge_explanations(reported, traces) })
 }
 
-/// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
-/// of the wrong formula that all of them allow.
+/// Returns an explanation with the polynomials of all traces that report the same mistake. It has only the exact forms
+/// of the wrong formula that all of these traces allow.
 fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanation {
     let mut reported = reported.clone();
     let statement = reported.statement();

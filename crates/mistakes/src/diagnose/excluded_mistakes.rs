@@ -56,10 +56,10 @@ fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[E
 /// dropped after one contradiction, up to 16 after two, and so on.
 const NAMED_PER_CONTRADICTION: usize = 8;
 
-/// Returns whether traces contradict a mistake of a stage: the same stage is wrong in another way, although the mistake
-/// would show there, and no other known mistake explains it. If one of the other likely mistakes (`others`) would show
-/// as well, the program may make both. A mistake in a formula is contradicted by its own polynomials instead
-/// ([`evidence`](super::evidence)).
+/// Returns whether traces contradict a mistake of a stage. A trace contradicts the mistake if the same stage is wrong
+/// in another way, although the mistake would show there. No other known mistake may explain this trace. If one of the
+/// other likely mistakes (`others`) would show as well, the program may make both. A mistake in a formula is
+/// contradicted by its own polynomials instead ([`evidence`](super::evidence)).
 fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
     let Some(row) = find(key).filter(|row| !is_formula_area(row.area)) else { return false };
     let (stage, is_of_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
@@ -94,7 +94,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make. Such a mistake is in code that a student of this milestone does not write, or other wrong
-/// traces contradict it, or the program is right on a scene on which the mistake would be visible
+/// traces contradict it. The program may also be right on a scene on which the mistake would be visible
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.

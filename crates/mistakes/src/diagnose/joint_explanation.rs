@@ -237,8 +237,8 @@ fn is_needed(next: &Explanation, traces: &[OpenTrace]) -> bool {
 }
 
 /// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
-/// polynomial and contact vector, and the symptoms of a stage may follow from a mistake reported for it or for an
-/// earlier stage.
+/// polynomial and contact vector. The symptoms of a stage may follow from a mistake that is reported for this stage or
+/// for an earlier one.
 fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, traces);
     let subjects = next.subjects();
@@ -288,7 +288,7 @@ fn drop_consequences(traces: &mut Vec<OpenTrace>) {
 }
 
 /// Keeps only the explanations of the earliest stage, because later faults may follow from it. Also drops known
-/// mistakes of that stage or a later one if they explain fewer traces than have a fault in the stage: such mistakes
+/// mistakes of that stage or a later one if they explain fewer traces than have a fault in the stage. Such mistakes
 /// only resemble the fault.
 fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let all = || traces.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);

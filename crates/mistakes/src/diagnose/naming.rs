@@ -40,9 +40,9 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
     explanations.iter().any(|explanation| alternative_statements(explanation).contains_key(&statement))
 }
 
-/// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
-/// those that it cannot distinguish, and all that would give the same polynomials. Each has a flag, which is true if
-/// it explains everything that this explanation is about.
+/// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace. These are
+/// its own, those that it cannot distinguish, and all that would give the same polynomials. Each has a flag, which is
+/// true if it explains everything that this explanation is about.
 pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_exhaustive())]);
@@ -50,7 +50,7 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     if one.is_complete() {
         all.extend(all_rows().filter(|row| has_same_meaning(one, row)).map(|row| (row.id.to_owned(), true)));
     }
-    // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake, or a
+    // A statement may explain one of several polynomials. It explains all of them only if it is a known mistake, or a
     // guess that does not depend on the polynomial.
     let words_by_subject = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {

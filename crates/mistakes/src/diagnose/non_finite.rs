@@ -104,8 +104,8 @@ fn has_non_finite_value(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// Returns the stage of a step that computes a value that is not finite from a finite state, or `None` if the reference
-/// does so as well or has no result.
+/// Returns the stage of a step that computes a value that is not finite from a finite state. Returns `None` if the
+/// reference does so as well or has no result.
 fn find_in_step(
     reference: &mut Reference<'_>,
     scene: &Scene,

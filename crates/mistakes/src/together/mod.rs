@@ -35,7 +35,7 @@ pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(disclosed)
 }
 
-/// Returns only the part of the grade that students see immediately: points and verdict are those of the remaining
+/// Returns only the part of the grade that students see immediately. Points and verdict are those of the remaining
 /// groups, and hints limit the reports on their scenes ([`disclosed_grade`]). Unless the suite shows the output of
 /// programs, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
 pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
@@ -80,9 +80,9 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
     }
 }
 
-/// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it: the simulator
-/// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points are not
-/// included.
+/// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it. On these
+/// scenes, the simulator with only this mistake makes the same wrong steps as the submission. Points for speed and
+/// extra points are not included.
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     // The simulator cannot make an unknown mistake.
     if mistake.is_unexplained() {

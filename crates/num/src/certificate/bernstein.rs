@@ -3,7 +3,7 @@
 //!
 //! On an interval a polynomial lies between its smallest and its largest Bernstein coefficient (for instance Farouki,
 //! *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). If all of them are negative with a
-//! margin, and the zeros are near (a bound after Fujiwara, 1916) and separated, the root finder has always agreed; the
+//! margin, and the zeros are near (a bound after Fujiwara, 1916) and separated, the root finder has always agreed. The
 //! header of [`super`] lists what is only measured.
 use super::{
     super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR_LIMIT},

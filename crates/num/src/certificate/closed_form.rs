@@ -12,8 +12,8 @@ use super::{
     Level,
 };
 
-/// Returns the level of the proof that a polynomial of degree at most two (without small leading coefficients) is not
-/// positive within the step, or `None` if there is no proof. NaN and infinities never give a wrong `Some`.
+/// Returns the level of the proof that a polynomial of degree at most two is not positive within the step, or `None` if
+/// there is no proof. Small leading coefficients must have been removed. NaN and infinities never give a wrong `Some`.
 #[inline]
 pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {
     let (level, excluded) = match *coefficients {
@@ -80,9 +80,9 @@ fn has_no_real_zero(a: f64, b: f64, c: f64) -> bool {
 /// Returns whether the parabola is below zero on `[0, 1]` with a margin, and its zeros are near.
 ///
 /// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the absolute
-/// coefficients, far less than the margin, so none is in `[0, 1]`. Their absolute value is at most r = 2^23, so the
-/// rounding error of a value is at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have an absolute
-/// value of at least |a|, and the one between two zeros on either side of `[0, 1]` at least |a|/4.
+/// coefficients. This is far less than the margin, so no zero is in `[0, 1]`. Their absolute value is at most r = 2^23,
+/// so the rounding error of a value is at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have an
+/// absolute value of at least |a|. The sample between two zeros on either side of `[0, 1]` has one of at least |a|/4.
 #[inline]
 fn is_negative_on_unit(a: f64, b: f64, c: f64) -> bool {
     let size = a.abs() + b.abs() + c.abs();

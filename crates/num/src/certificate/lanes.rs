@@ -81,16 +81,16 @@ fn is_within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.is_at_least(low) & value.is_below(high)
 }
 
-/// Returns the lanes in which an impact is excluded for a particle-particle or particle-half-plane pair, because one of
-/// its polynomials (a parabola and a line) is provably not positive within the step.
+/// Returns the lanes in which an impact is excluded for a particle-particle or particle-half-plane pair. In these
+/// lanes, one of the pair's polynomials (a parabola and a line) is provably not positive within the step.
 #[inline(always)]
 pub fn excludes_two_polynomials<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     is_never_positive(a, b, c) | is_line_never_positive(d, e)
 }
 
-/// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
-/// provably not positive within the step, and the search among all of them would end. `ends` has the lanes in which
-/// the searches of the first and the last polynomial would end.
+/// Returns the lanes in which the closed forms exclude an impact of a pair with an edge. In these lanes, one of the
+/// pair's polynomials is provably not positive within the step, and the search among all of them would end. `ends` has
+/// the lanes in which the searches of the first and the last polynomial would end.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,

@@ -5,7 +5,7 @@
 //! the original's root finder matter, not the actual ones. The root finder samples each gap between the zeros once, and
 //! rounding may decide a sample.
 //!
-//! One condition is enough: the result exceeds 1 if the computed positive set of *one* polynomial has no interval with
+//! One condition is enough. The result exceeds 1 if the computed positive set of *one* polynomial has no interval with
 //! `hi > 0` and `lo <= 1`, and if no search hangs. Combining several polynomials would hardly decide more calls in
 //! scenes.
 //!
@@ -13,13 +13,13 @@
 //!
 //! * **Constants, `c z^m`, lines: exact.** The root finder's own few operations, or a bound on their rounding.
 //! * **Parabolas: proved.** The closed form's zeros are those of a polynomial whose coefficients differ by a few
-//!   units in the last place of the largest, far less than the margin; the samples' values exceed their rounding errors
-//!   because the zeros are near (see `closed_form`).
+//!   units in the last place of the largest. This is far less than the margin. The samples' values exceed their
+//!   rounding errors because the zeros are near (see `closed_form`).
 //! * **Degree three and above: measured.** The search is iterative, and the effect of deflation on zeros is not
-//!   bounded here. The polynomial is negative with a margin; no zeros coincide, even nearly, which makes all zeros
-//!   well-conditioned and keeps samples off double zeros (without this condition, grids of integers have shown one
-//!   disagreement in several hundred thousand); the zeros are not far away. `crates/lab/src/bin/audit` compares
-//!   certificate and search, for lists and for each polynomial alone; there is no disagreement.
+//!   bounded here. The polynomial must be negative with a margin, and its zeros must not be far away. No zeros may
+//!   coincide, even nearly. This makes all zeros well-conditioned and keeps samples off double zeros. Without this
+//!   condition, grids of integers have shown one disagreement in several hundred thousand. `crates/lab/src/bin/audit`
+//!   compares certificate and search, for lists and for each polynomial alone. There is no disagreement.
 //! * **Termination: measured** for degree three and above, within the range of coefficients that is admitted.
 
 mod bernstein;
@@ -47,12 +47,12 @@ crate::closed_set! {
     }
 }
 
-/// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is provably greater than 1 (or
-/// infinite), with a margin that covers the root finder's own errors, and whether its search provably ends. `false`
-/// means "unknown".
+/// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is provably greater than 1 or
+/// infinite, and its search provably ends. A margin covers the root finder's own errors. `false` means "unknown".
 ///
-/// Coefficients that are not finite give `false` unless a polynomial of degree at most two decides and every polynomial
-/// with such coefficients has degree at most two, for which the search returns normally.
+/// Coefficients that are not finite usually give `false`. The exception is that a polynomial of degree at most two
+/// decides, and every polynomial with such coefficients has degree at most two. The search returns normally for these
+/// degrees.
 #[inline]
 pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
     find_exclusion(polynomials).is_some()

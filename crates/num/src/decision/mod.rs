@@ -2,13 +2,14 @@
 //!
 //! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16). It is enough that the
 //! *closures* of their positive sets meet in `(0, 1]`; a common open interval is not necessary. Each coefficient is
-//! known up to an error; [`decide`] finds whether the result is the same for all choices of coefficients, and proves
+//! known up to an error. [`decide`] finds whether the result is the same for all choices of coefficients, and proves
 //! it. It does not depend on the result of the original's root finder (that is [`first_time`](super::first_time), and
 //! [`certificate`](super::certificate) for skipping it).
 //!
-//! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the
-//! one with the greatest coefficients ("upper") is positive where any is, and the one with the least ("lower") only
-//! where all are. Hence `tau(upper) <= tau <= tau(lower)` for every choice, and both ends are choices themselves:
+//! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients. Among all choices, the one
+//! with the greatest coefficients ("upper") is therefore positive wherever any choice is. The one with the least
+//! coefficients ("lower") is positive only where all choices are. Hence `tau(upper) <= tau <= tau(lower)` for every
+//! choice, and both ends are choices themselves:
 //!
 //! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
 //! * **No** exactly if `tau(upper) > 1`;
@@ -20,11 +21,11 @@
 //! by integer arithmetic (`exact`), which always has a result.
 //!
 //! The rules, and their differences from the original, are as follows. Zeros at which a polynomial only touches zero
-//! from above do not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11);
-//! a time of exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and a zero
-//! polynomial are nowhere positive (17.2). Coefficients are used unchanged: small leading ones are not dropped, and `c
-//! t^m` is positive after 0 if `c` is, while the original treats it as nowhere positive (17.1). Code that compares with
-//! the original must allow for both differences.
+//! from above do not interrupt its positive set (root-finder.md 15.4). Sets that have only one time in common meet
+//! (17.11). A time of exactly 1 counts, but sets that end at exactly 0 do not count (16.2). An empty list, an empty
+//! polynomial and a zero polynomial are nowhere positive (17.2). Coefficients are used unchanged, and small leading
+//! ones are not dropped. If `c` is positive, `c t^m` is positive after 0, while the original treats it as nowhere
+//! positive (17.1). Code that compares with the original must allow for both differences.
 pub mod exact;
 pub(crate) mod pieces;
 pub(crate) mod range;
@@ -86,9 +87,9 @@ pub struct CertifiedDecision {
     /// Whether the detection hits, or is too close to call.
     pub certainty: HitCertainty,
     /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Hits`, it is valid for every choice of
-    /// coefficients; it is about as wide as the effect of the coefficients' errors, or wider if the polynomials nearly
-    /// touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at most
-    /// 1), or is `None` if a coefficient is not finite. The value is `None` for `Misses`.
+    /// coefficients. It is then about as wide as the effect of the coefficients' errors, or wider if the polynomials
+    /// nearly touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at
+    /// most 1), or is `None` if a coefficient is not finite. The value is `None` for `Misses`.
     pub time: Option<[f64; 2]>,
     /// The number of units `u` of the coefficients' bounds for which the decision is proved to be right, at least the
     /// given `units` and at most [`MAX_MARGIN`]. The true number may be larger. It is 0 for `Borderline`.
@@ -97,9 +98,9 @@ pub struct CertifiedDecision {
     pub level: Level,
 }
 
-/// Decides whether all polynomials of a detection become positive within the step: whether `tau <= 1` for every choice
-/// of coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's
-/// header).
+/// Decides whether all polynomials of a detection become positive within the step. The result states whether `tau <= 1`
+/// for every choice of coefficients, for none, or for some (see the module's header). The choices deviate by at most
+/// `units` times [`UNIT_ROUNDOFF`] times the coefficients' bounds.
 ///
 /// Coefficients must be in the order highest power first, untrimmed. With `units` 0 (or bounds that are all 0) the
 /// result is that of [`find_exact_first_time`] and never `Borderline`. A coefficient that is not finite always gives

@@ -22,8 +22,8 @@ const UNDERFLOW_BOUND: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 /// The bound on the error of the Bernstein coefficients, in units of the sum of the absolute power coefficients.
 const CONVERSION_BOUND: f64 = 16.0 * UNIT_ROUNDOFF;
 
-/// The number of roundings up to a Bernstein coefficient: of a weight, of a product, of all sums except the first, and
-/// of the sum of the absolute coefficients. The proof allows for twice as many.
+/// The number of roundings up to a Bernstein coefficient. A weight, a product, all sums except the first, and the sum
+/// of the absolute coefficients are rounded. The proof allows for twice as many.
 const ROUNDING_COUNT: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
 const _: () = assert!(CONVERSION_BOUND >= 2.0 * ROUNDING_COUNT as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 
@@ -94,9 +94,9 @@ impl Problem {
         })
     }
 
-    /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step, and the number of
-    /// further units of the bounds for which the result stays right. Returns `None` if no polynomial proves this. A
-    /// problem without polynomials never hits.
+    /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step. The second value is
+    /// the number of further units of the bounds for which the result stays right. Returns `None` if no polynomial
+    /// proves this. A problem without polynomials never hits.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {

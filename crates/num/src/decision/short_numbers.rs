@@ -1,7 +1,8 @@
 //! Short numbers, for which formulas are exact in every order of evaluation.
 //!
-//! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two
-//! and the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
+//! A double is an integer times a power of two. The inputs of a formula may all be integer multiples of *one* power of
+//! two. If these integers are short, every sum and product of the formula still fits into 53 bits, and nothing is
+//! rounded.
 
 /// Returns whether all values are integer multiples of one power of two with quotients whose absolute values are below
 /// `2^bits`. Zeros fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.

@@ -1,5 +1,5 @@
-//! A lower bound on the moduli of the zeros (root-finder.md 9): the positive zero of the polynomial whose coefficients
-//! are the moduli, the last one negated, to half a per cent.
+//! A lower bound on the moduli of the zeros (root-finder.md 9). It is the positive zero, to half a percent, of the
+//! polynomial whose coefficients are the moduli of the coefficients, with the last one negated.
 use super::{Coefficients, DoesNotTerminate};
 use crate::elementary::{exp, ln};
 

@@ -5,8 +5,8 @@
 //! I. The stages have the names of the papers, one file each. Nothing is stored between calls, nothing allocates, and
 //! no operation is reordered: unusual formulas are the original's.
 //!
-//! The degree of the current polynomial is a compile-time parameter `N` of the inner functions, so that their loops are
-//! unrolled and their index checks removed; this changes no operation.
+//! The degree of the current polynomial is a compile-time parameter `N` of the inner functions. Their loops are
+//! therefore unrolled and their index checks removed, which changes no operation.
 
 mod bound;
 mod constants;

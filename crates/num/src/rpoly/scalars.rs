@@ -1,8 +1,8 @@
 //! The scalars of a K polynomial, the next K polynomial, and the new estimate of the quadratic factor (root-finder.md 6
 //! and 7).
 //!
-//! With `a`, `b` from the division of P and `c`, `d` from that of K, the published formulas use `bc - ad`, `a² + uab +
-//! vb²` and `ac + uad + vbd`, divided by `c` or by `d`, whichever has the larger modulus.
+//! The division of P gives `a` and `b`, and that of K gives `c` and `d`. The published formulas use `bc - ad`, `a² +
+//! uab + vb²` and `ac + uad + vbd`, divided by `c` or by `d`, whichever has the larger modulus.
 use super::{Coefficients, constants::UNIT_ERROR, quadratic};
 
 /// The quadratic factor `z² + u z + v`, and the polynomial of degree `N` divided by it.

@@ -6,7 +6,7 @@
 /// Names of polynomials in the assignment, which do not count as formulas.
 const POLYNOMIAL_NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
-/// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
+/// Returns the first part of a formula in a sentence. It is a number, an operator, a product with a dot, a function's
 /// argument, or a letter of a quantity. Returns `None` if there are only words. The names `alpha > 0` and `alpha < 1`
 /// do not count as formulas.
 pub fn find_formula(sentence: &str) -> Option<String> {

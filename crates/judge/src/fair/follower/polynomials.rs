@@ -98,7 +98,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
-    /// has the right position. The polynomials of overlap and approach depend on the distance of the objects; the other
+    /// has the right position. The polynomials of overlap and approach depend on the distance of the objects. The other
     /// two polynomials of a particle and an edge depend on the position along the edge.
     fn is_proven(
         &self,

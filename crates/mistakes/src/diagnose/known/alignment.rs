@@ -32,8 +32,8 @@ fn count_records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// Returns the number of right steps in the opening if the records are read without the missing one, or `None` if one
-/// of them is wrong, or if there are none.
+/// Returns the number of right steps in the opening if the records are read without the missing one. Returns `None` if
+/// one of these steps is wrong, or if there are none.
 fn count_aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

@@ -10,8 +10,8 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, Term, all_rows};
 /// The maximum number of pairs in a scene. In larger scenes, penalty forces between distant bodies are not tried.
 const MAX_DISTANT_PAIRS: usize = 5_000;
 
-/// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
-/// student of the scene's assignment. Missing records and faults of nearby pairs are found separately
+/// Returns the rows that may explain a trace of the scene, in the order of the catalogue. They are mistakes in the code
+/// that students write in the scene's assignment. Missing records and faults of nearby pairs are found separately
 /// ([`near_pairs`](super::super::near_pairs)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_elsewhere =

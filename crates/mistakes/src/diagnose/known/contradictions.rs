@@ -10,8 +10,8 @@ use fosssim_model::{
 use fosssim_num::vector::{length, vector_at};
 use fosssim_student::{CATALOGUE, Mistake, Row};
 
-/// Returns the keys of mistakes with which a program never does something that this trace shows: move a zone, make a
-/// pass, or log a right polynomial of a kind.
+/// Returns the keys of mistakes with which a program never does something that this trace shows. For example, the
+/// program never moves a zone, never makes a pass, or never logs a right polynomial of a kind.
 pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong_steps.iter().chain(&scan.right_steps);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| find_right_kinds(scene, sample)).collect();

@@ -3,9 +3,9 @@
 //! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For a diverse
 //! selection of them, and for several right steps with events, the second simulator ([`fosssim_student`]) starts from
 //! the submission's own state and makes one mistake. The mistake explains the submission if everything that the step
-//! logged is reproduced: polynomials up to a positive factor, contacts, the states in the middle and at the end. The
-//! search never judges: a step that no mistake reproduces stays wrong. Correct variants of the catalogue are tried as
-//! well, and if one of them reproduces the steps, no mistake is named.
+//! logged is reproduced. This includes polynomials up to a positive factor, contacts, and the states in the middle and
+//! at the end. The search never judges: a step that no mistake reproduces stays wrong. Correct variants of the
+//! catalogue are tried as well, and if one of them reproduces the steps, no mistake is named.
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`sampling`](super::sampling).
 mod alignment;
@@ -37,10 +37,10 @@ use trials::Trials;
 
 /// Returns the mistakes of the catalogue that explain a trace.
 ///
-/// The result is empty if all steps are right, if no mistake reproduces at least half of the wrong steps, or if a
-/// correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three mistakes that
-/// reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same steps are in
-/// [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order:
+/// The result is empty if all steps are right, or if no mistake reproduces at least half of the wrong steps. It is also
+/// empty if a correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three
+/// mistakes that reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same
+/// steps are in [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order:
 /// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
 /// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of

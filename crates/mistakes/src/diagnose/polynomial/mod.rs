@@ -1,12 +1,13 @@
 //! Finds the mistake that makes detection polynomials wrong.
 //!
 //! Each sample consists of the inputs of a detection, and the logged polynomials. A guess is rated by the number of
-//! samples that it reproduces to round-off, including right ones. Guesses are about the following, from simple to
-//! intricate: the whole list of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end
-//! positions, radii squared separately), misunderstandings with their own formula, one letter of a formula (`slips`),
-//! any other radius (`radius`), and the terms of single coefficients (`terms`: sparse least squares over the products
-//! of dot products, with weights that are multiples of 1/4). Correct polynomials are those of collisions.md 2, each up
-//! to a positive factor. The quintic may be the supplied one or the mathematically right one.
+//! samples that it reproduces to round-off, including right ones. The simplest guesses are about the whole list of
+//! coefficients (`structure`), which may be reversed, negated, cut or exchanged. Other guesses are about the inputs,
+//! such as end positions or radii squared separately, and about misunderstandings with their own formula. Further ones
+//! are about one letter of a formula (`slips`) and about any other radius (`radius`). The most intricate guesses are
+//! about the terms of single coefficients (`terms`). They are found by sparse least squares over the products of dot
+//! products, with weights that are multiples of 1/4. Correct polynomials are those of collisions.md 2, each up to a
+//! positive factor. The quintic may be the supplied one or the mathematically right one.
 //!
 //! The module reads no trace, judges nothing and never uses decisions or responses.
 mod compare;

@@ -66,7 +66,8 @@ pub(super) struct Candidate {
     /// All exact forms that reproduce as much, the likeliest first. The list is empty if there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
     /// The cost of the guess; a likelier guess costs less. The cost is 1 to 3 for a change of the whole list, about 3
-    /// for one factor or sign, 4 for one wrong input, and 5 or more for wrong letters and foreign terms; edits add up.
+    /// for one factor or sign, and 4 for one wrong input. It is 5 or more for wrong letters and foreign terms. The
+    /// costs of several edits are added.
     pub cost: f64,
     /// The number of samples that the guess reproduces.
     pub reproduced: usize,

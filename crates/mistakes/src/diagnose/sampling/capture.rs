@@ -18,8 +18,8 @@ pub struct Capture {
     pub records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub detections: Vec<(Pair, Pass, usize)>,
-    /// The events of the step, as bits for each kind of pair and stage with a collision, for the number of rounds, and
-    /// for each kind of zone. The number is zero if nothing collided.
+    /// The events of the step, as bits. There are bits for each kind of pair and stage with a collision, for the number
+    /// of rounds, and for each kind of zone. The number is zero if nothing collided.
     pub event_bits: u32,
 }
 

@@ -1,7 +1,8 @@
 //! The log of one step, and its comparison with another log up to round-off.
 //!
-//! Polynomials are compared up to a positive factor, because only their signs matter; contacts in any order; states and
-//! contact vectors relative to the size of the numbers around them. NaN equals only NaN.
+//! Polynomials are compared up to a positive factor, because only their signs matter. Contacts are compared in any
+//! order. The tolerances of states and contact vectors are relative to the size of the numbers around them. NaN equals
+//! only NaN.
 use fosssim_model::{
     scene::{Integrator, Scene},
     sim::State,
@@ -25,7 +26,7 @@ fosssim_model::drops_leading!();
 pub struct Tolerance {
     /// The tolerance of a coefficient, relative to itself.
     pub coefficient: f64,
-    /// The tolerance of a coefficient, relative to the largest one of its polynomial: if the terms of a coefficient
+    /// The tolerance of a coefficient, relative to the largest one of its polynomial. If the terms of a coefficient
     /// cancel, its round-off is as large as that of the terms.
     pub floor: f64,
     /// The tolerance of a coordinate or a velocity, relative to the largest one of its kind plus 1.

@@ -2,8 +2,8 @@
 //!
 //! The inputs of a detection pass are the start and the end positions of the step. The trace contains the start. The
 //! end is the reference integrator's result, before any response. The samples are therefore from the first pass of each
-//! step, and in hybrid scenes also from the first pass of the geometric part, which starts from the mid record. A wrong
-//! polynomial that is right for the positions of the mid record shows another integrator, and is left out.
+//! step. In hybrid scenes they are also from the first pass of the geometric part, which starts from the mid record. A
+//! wrong polynomial that is right for the positions of the mid record shows another integrator, and is left out.
 use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
@@ -27,9 +27,9 @@ pub struct Sample {
     pub pair: Pair,
     /// The inputs of the detection, from the submission's own states.
     pub motion: PairMotion,
-    /// The logged coefficients, one list per polynomial of the kind in the trace's order (2 or 4); each highest power
-    /// first and without the small leading coefficients that the course's library drops. If there are fewer lists, the
-    /// last polynomials are missing.
+    /// The logged coefficients, with one list for each of the kind's 2 or 4 polynomials, in the trace's order. In each
+    /// list the highest power is first, and the small leading coefficients that the course's library drops are missing.
+    /// If there are fewer lists, the last polynomials are missing.
     pub polynomials: Vec<Vec<f64>>,
 }
 

@@ -1,10 +1,11 @@
 //! Finds the wrong stage of a step if no known mistake explains it.
 //!
-//! In a trace the results of a stage follow from those of the previous stage: polynomials from the state, contacts from
-//! the polynomials, the state in the middle from the contacts, zones from that state. Therefore the stage to check is
-//! the first one whose results are wrong although everything before is right. The features that its wrong results have
-//! in common (a factor, a kind of pair, a body) show what to check. The results are observations, not guesses. No stage
-//! is reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
+//! In a trace the results of a stage follow from those of the previous stage. Polynomials follow from the state,
+//! contacts from the polynomials, the state in the middle from the contacts, and zones from that state. Therefore the
+//! stage to check is the first one whose results are wrong although everything before is right. The features that its
+//! wrong results have in common (a factor, a kind of pair, a body) show what to check. The results are observations,
+//! not guesses. No stage is reported if an earlier one may have affected it, or if a polynomial with known inputs is
+//! wrong.
 mod contacts;
 mod events;
 mod responses;

@@ -327,8 +327,8 @@ fn move_group(scene: &Scene, group: &ParticleGroup, stops: bool, start: &State, 
     }
 }
 
-/// Returns the angle by which the failsafe turns a group, in radians: its angular momentum divided by its moment of
-/// inertia, both for the motion from the start of the step to `state` (collisions.md 5).
+/// Returns the angle by which the failsafe turns a group, in radians. It is the group's angular momentum divided by its
+/// moment of inertia, both for the motion from the start of the step to `state` (collisions.md 5).
 pub(super) fn rotation_angle(scene: &Scene, group: &ParticleGroup, start: &State, state: &State) -> f64 {
     let (center, to) = (center_of_mass(scene, group, start), center_of_mass(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);

@@ -127,8 +127,8 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
-/// The probe scenes do not depend on round-off or on the choice of correct formula, except if a small factor makes the
-/// course's library drop coefficients that affect a decision.
+/// The probe scenes do not depend on round-off or on the choice of correct formula. The exception is a small factor
+/// with which the course's library drops coefficients that affect a decision.
 #[test]
 fn correct_programs_are_accepted_in_every_probe_scene() {
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).map(Some);

@@ -7,9 +7,9 @@
 //! Starts and displacements of particles are integers or small dyadic fractions. The step is half a second, in the
 //! large scenes a quarter. In three scenes the step is not a power of two, which distinguishes velocities from
 //! displacements. The first step's polynomials therefore have coefficients that can be checked by hand. In the `drift`
-//! scenes this holds for every step, because moving fixed particles are never diverted (simulation.md 1). Gaps and
-//! displacements of the narrow scenes are half a millionth and about four millionths, so any margin that a program adds
-//! to a time or to the approach shows.
+//! scenes this holds for every step, because moving fixed particles are never diverted (simulation.md 1). In the narrow
+//! scenes, gaps are half a millionth and displacements are about four millionths. Any margin that a program adds to a
+//! time or to the approach therefore shows.
 //!
 //! This module runs nothing and never judges. The scenes are the same every time.
 /// Names and texts of the scenes: polynomials first, then contacts and responses, the impulse rounds, and zones. Each
