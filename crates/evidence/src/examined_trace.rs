@@ -20,7 +20,7 @@ pub enum KeptPart {
     /// The beginning of the trace is kept. Reading stops when judging stops, because the program at the other end of a
     /// pipe may write nothing more.
     Read,
-    /// The beginning of the trace is kept, including the part after the place where judging stops.
+    /// The beginning of the trace is kept, including the steps after judging has stopped.
     All,
 }
 

@@ -62,7 +62,7 @@ pub struct Step {
     pub actual_passes: Option<u32>,
 }
 
-/// A place to show in detail: a step, and possibly a pair in one pass, or in all passes in which it collides.
+/// A step to show in detail, and possibly a pair in one pass, or in all passes in which it collides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Focus {
     /// The step, from 1.
@@ -74,7 +74,7 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// Returns the places of the findings of both rule books, beginning with the official book's.
+    /// Returns the step, pass and pair of each finding of both rule books, beginning with the official book's.
     pub fn from_outcome(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
         books.flat_map(|book| book.first_divergence.iter().chain(&book.examples)).map(Self::from).collect()
@@ -105,7 +105,7 @@ pub struct Evidence {
 }
 
 /// Reads a trace and returns its evidence. `rulings` are the judge's rulings in the order of the steps; `fair` selects
-/// the rule book that decides; `focus` names the places of findings, the most important first.
+/// the rule book that decides; `focus` contains the steps and pairs of findings, the most important first.
 ///
 /// If a trace cannot be read to its end, the evidence covers the readable part.
 pub fn gather(

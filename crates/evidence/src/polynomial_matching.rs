@@ -2,8 +2,8 @@
 //!
 //! The assignment is the shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The
 //! string-to-string correction problem", J. ACM 21, 1974). An omission or insertion costs more than half of a wrong
-//! polynomial, so a wrong polynomial in the right place does not count as missing. A mark is not a verdict: with wrong
-//! and missing polynomials together, other scripts may be equally short.
+//! polynomial, so a wrong polynomial at the right position in the list does not count as missing. A mark is not a
+//! verdict: with wrong and missing polynomials together, other scripts may be equally short.
 use fosssim_model::trace::PolynomialLog;
 
 /// The maximum number of pairs of polynomials that are compared.

@@ -53,7 +53,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Reads the records of a trace in a window, up to the first unreadable place.
+    /// Reads the records of a trace in a window, up to the first record that cannot be read.
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = LenientReader::new(trace, layout);
         let (mut frame, mut track) = (LenientFrame::default(), Self::default());

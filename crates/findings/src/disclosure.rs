@@ -72,7 +72,7 @@ pub struct DisclosedBook {
 /// The part of a finding that a report may show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DisclosedFinding {
-    /// The kind and the place of the finding, without values.
+    /// The kind of the finding, and the step and object that it is about, without values.
     Place {
         /// The step number, from 1; 0 for the first record.
         step: u32,

@@ -148,7 +148,7 @@ pub enum FindingDetail {
     },
     /// The number of coefficients differs.
     PolynomialDegree {
-        /// The place of the polynomial in the step.
+        /// The polynomial, by its pass, pair and index.
         place: PolynomialPlace,
         /// The polynomial of the reference.
         expected: Polynomial,
@@ -159,7 +159,7 @@ pub enum FindingDetail {
     },
     /// The reference's polynomial is zero up to round-off, but the trace's polynomial is not zero.
     VanishingPolynomial {
-        /// The place of the polynomial in the step.
+        /// The polynomial, by its pass, pair and index.
         place: PolynomialPlace,
         /// The polynomial of the reference.
         expected: Polynomial,
@@ -168,7 +168,7 @@ pub enum FindingDetail {
     },
     /// A coefficient differs.
     Coefficient {
-        /// The place of the polynomial in the step.
+        /// The polynomial, by its pass, pair and index.
         place: PolynomialPlace,
         /// The highest power of t whose coefficient differs after division by the factor that most coefficients have in
         /// common.
@@ -232,7 +232,7 @@ pub enum FindingDetail {
     /// The polynomial of a pair that a response or the failsafe has moved matches neither the motion before it nor the
     /// motion after it (fair rules). If the polynomial is right, the particles' positions are wrong.
     PassPositions {
-        /// The place of the first such polynomial in the step.
+        /// The first such polynomial, by its pass, pair and index.
         place: PolynomialPlace,
     },
     /// The mid record and the end record of the step contradict each other (fair rules).
@@ -246,7 +246,7 @@ pub enum FindingDetail {
     /// A decision of the trace depends on coefficients that are missing in its polynomials, because the course's
     /// library drops small ones after a scaling (fair rules).
     TrimmedDecision {
-        /// The place of the pair's first polynomial in the step.
+        /// The first polynomial of the pair, by its pass and index.
         place: PolynomialPlace,
         /// Whether the pair collides if no coefficient is missing.
         collides: bool,
@@ -254,7 +254,7 @@ pub enum FindingDetail {
     /// A time of impact in the trace depends on coefficients that are missing in its polynomials, because the course's
     /// library drops small ones after a scaling (fair rules).
     TrimmedTime {
-        /// The place of the pair's first polynomial in the step.
+        /// The first polynomial of the pair, by its pass and index.
         place: PolynomialPlace,
         /// The time of impact if no coefficient is missing.
         #[serde(with = "fosssim_num::number_serde")]
@@ -277,7 +277,7 @@ pub enum FindingDetail {
     },
     /// The trace mixes the two accepted forms of the approach polynomial (fair rules).
     MixedForms {
-        /// The place of the first polynomial that has the other form.
+        /// The first polynomial that has the other form, by its pass, pair and index.
         place: PolynomialPlace,
     },
     /// The penalty force between two nearby bodies was left out or applied twice (fair rules).
@@ -401,7 +401,7 @@ pub enum RecordPart {
     Polynomials,
 }
 
-/// The place of a polynomial in a step.
+/// A polynomial of a step, identified by its pass, pair, condition and index.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolynomialPlace {
     /// The detection pass to which the polynomial belongs.

@@ -272,7 +272,7 @@ pub enum Failure {
     Panic {
         /// The activity of the grader when it failed, if it is known.
         stage: Option<Activity>,
-        /// The panic's message, and its place in the source code.
+        /// The panic's message, and its location in the source code.
         fault: String,
         /// The trace on which the grader failed, if there was one.
         trace: Option<SavedTrace>,
@@ -292,7 +292,7 @@ fosssim_num::closed_set! {
     }
 }
 
-/// The place of the trace on which the grader failed.
+/// The file that contains the trace on which the grader failed, if it could be stored.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedTrace {
     /// The trace is stored in this file.

@@ -121,8 +121,8 @@ impl RecordPlaces {
         Self { pairs: pairs(scene), is_continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
-    /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
-    /// rounds end, so passes are counted as rounds.
+    /// Returns the pass, pair and condition of polynomial `index` of a frame. In `hybrid` the recording does not show
+    /// where the impulse rounds end, so passes are counted as rounds.
     fn place_at(&self, index: usize) -> PolynomialPlace {
         // A scene without pairs has no recording with polynomials, so this placeholder is never shown.
         let placeholder = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);

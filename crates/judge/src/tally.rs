@@ -265,8 +265,8 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference as in oracle-behavior.md 6.2. `place` computes its place, if it is
-    /// needed.
+    /// Compares the next polynomial of the reference as in oracle-behavior.md 6.2. `place` returns its pass, pair and
+    /// index, and is called only for a finding.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
         self.polynomials += 1;

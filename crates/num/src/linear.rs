@@ -51,8 +51,8 @@ pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
 /// The decomposition of a matrix, which is replaced by its unit lower and its upper triangle, both permuted. The result
 /// is the rank.
 ///
-/// `row_swaps[k]` is the row that was exchanged with row k; `column_order[k]` the original column that is now in
-/// place k.
+/// `row_swaps[k]` is the row that was exchanged with row k; `column_order[k]` is the original index of the column that
+/// is now column k.
 struct Decomposition<'a> {
     /// The matrix of size n x n, column by column.
     matrix: &'a mut [f64],

@@ -29,8 +29,8 @@ pub fn unit(v: Vec2) -> Vec2 {
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
 }
 
-/// Returns the positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with one column
-/// per particle, without copying.
+/// Returns a matrix that has one column per particle, without copying. `values` contains the positions or velocities of
+/// a state, with `x` and `y` of each particle in turn.
 pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
     MatrixView2xX::from_slice(values, values.len() / 2)
 }

@@ -59,8 +59,8 @@ use std::{
 /// The prefix of the program's names that make it behave like the original.
 const PROGRAM_PREFIX: &[u8] = b"FOSSSimOracle";
 
-/// Returns the name for messages, and the arguments, if the original is to be replaced: by the program's name
-/// `FOSSSimOracle...`, or by the first word, `original`.
+/// Returns the name for messages and the arguments if the command line requests the replacement, otherwise `None`. It
+/// does so by the program's name `FOSSSimOracle...`, or by the first word `original`.
 fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();

@@ -16,7 +16,7 @@ const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 /// The trace and the end of a program's run on a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Observation {
-    /// The trace, up to the place at which it ends.
+    /// The trace, which may be incomplete.
     pub trace: Vec<u8>,
     /// The result of the run.
     pub ended: RunEnd,

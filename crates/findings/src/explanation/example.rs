@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Example {
     /// The step number, from 1.
     pub step: u32,
-    /// The place of the example in the step.
+    /// The object or the record of the step that the example is about.
     pub place: ExamplePlace,
     /// The values from which the example is computed, in the assignment's notation.
     pub given: Vec<ExampleValue>,
@@ -21,7 +21,7 @@ pub struct Example {
     pub actual: Vec<f64>,
 }
 
-/// The place of an example in its step. It determines what the numbers mean.
+/// The object or the record of a step that an example is about. It determines what the numbers mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
     /// The numbers are the coefficients of a polynomial whose inputs are given.

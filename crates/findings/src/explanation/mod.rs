@@ -53,9 +53,10 @@ pub struct Explanation {
     /// The keys of mistakes that the trace refutes: no program with such a mistake could write the trace.
     #[serde(rename = "denies")]
     pub contradicted_keys: Vec<String>,
-    /// All guesses that would produce the polynomials, as one word each. A word consists of the polynomial and the
-    /// known mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not reveal
-    /// a formula. The explanation's own guess comes first. For a polynomial without a guess, the word is only its name.
+    /// All guesses that would produce the polynomials, as one text each. The text contains the name of the polynomial.
+    /// The id of the known mistake follows, or a digest of the guess and a digest of its exact form. Digests do not
+    /// reveal a formula. The explanation's own guess comes first. For a polynomial without a guess, the text is only
+    /// its name.
     pub claims: Vec<String>,
 }
 

@@ -19,10 +19,10 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// A logged polynomial and its place.
+/// A logged polynomial, with the pass and the pair to which it belongs.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LoggedPolynomial<'a> {
-    /// The polynomial's place.
+    /// The polynomial's pass, pair, condition and index.
     pub place: PolynomialPlace,
     /// The polynomial's number within its pair.
     pub number: usize,

@@ -274,7 +274,7 @@ enum Change {
     DropTrailing(usize),
     Negate,
     Zeros,
-    /// Each polynomial is replaced by another one of the same step, this many places later.
+    /// Each polynomial is replaced by another one of the same step, whose index is larger by this number.
     Exchange(usize),
     /// One coefficient gets this value.
     Value(f64),

@@ -127,7 +127,7 @@ fn add_letter_note(explanation: &mut Explanation) {
         ExplanationTopic::Mistake => row.and_then(Row::pair_kind).into_iter().collect(),
         about => about.kinds(),
     };
-    // A known mistake's last line names the place to check.
+    // The last line of a known mistake names what to check.
     let end = explanation.details.len() - usize::from(row.is_some());
     if end > 0 {
         explanation.details.insert(end, Detail::Letters(kinds));

@@ -93,7 +93,7 @@ mod tests {
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
-            // The first value that is not finite has a place, and is not a guess.
+            // The first value that is not finite is an observation, not a guess.
             let end = NonFiniteValue { step: Some(3), stage: NanStage::Zones, is_nan: true, recovers: false };
             let end = Explanation { topic: ExplanationTopic::NotFinite(end), ..explanation() };
             assert_eq!(limit_explanations(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");

@@ -194,7 +194,7 @@ impl Factored {
 }
 
 /// Returns where the polynomials are first all positive or touch in `(0, 1]`, and whether they only touch. All cells of
-/// the grid are tested. Returns `None` if there is no such place.
+/// the grid are tested. Returns `None` if there is no such time.
 fn grid_answer(polynomials: &[Factored]) -> Option<(i32, bool)> {
     let positive = |polynomial: &Factored, eighth| polynomial.is_positive(eighth);
     let open = |eighth| polynomials.iter().all(|polynomial| positive(polynomial, eighth));

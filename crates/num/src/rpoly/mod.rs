@@ -32,7 +32,7 @@ type Coefficients = [f64; MAX_DEGREE + 1];
 /// A zero, as its real and its imaginary part.
 type Zero = (f64, f64);
 
-/// The error that the search would never end, because a coefficient is not finite (root-finder.md 9.4), or the Newton
+/// The error that the search would never end. Either a coefficient is not finite (root-finder.md 9.4), or the Newton
 /// iteration of the bound cycles among subnormal numbers (9.5). The original hangs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the root search does not terminate")]

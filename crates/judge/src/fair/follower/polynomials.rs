@@ -153,7 +153,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Returns the place of the call's first polynomial.
+    /// Returns the pass, pair and index of the call's first polynomial.
     pub(super) fn call_place(&self, pair: Pair) -> PolynomialPlace {
         let index = self.next_polynomial.map_or(0, |next| next - pair.kind.polynomial_count());
         PolynomialPlace { pass: self.pass, pair, role: Role::Overlap, index }

@@ -280,9 +280,10 @@ fn summarize_unexplained(unknown: &[WrongPolynomial]) -> Option<Explanation> {
     })
 }
 
-/// Returns the key whose general guesses reproduce all samples of the most polynomials; on a tie, the key with the
-/// lowest total cost. For each polynomial, only the first guess with the key is counted. Guesses about radii are left
-/// out. Returns `None` if no key covers at least two polynomials.
+/// Returns the key of the guess that reproduces all samples of the most polynomials. On a tie, it is the key with the
+/// lowest total cost. Only guesses that can be the same mistake in several polynomials count ([`Guess::is_general`]),
+/// and guesses about radii are left out. For each polynomial, only the first guess with the key is counted. Returns
+/// `None` if no key covers at least two polynomials.
 fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {

@@ -109,9 +109,10 @@ impl<'a> PolynomialStudy<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// Returns the number of samples that a predicted polynomial reproduces: with the sample's scale
-    /// ([`PolynomialSample::scale`]) or without a scale, or otherwise with any positive scale. The flag is set in the
-    /// last case. Returns `None` if fewer than half of the wrong samples are reproduced.
+    /// Returns the number of samples that a predicted polynomial reproduces. The prediction may be multiplied by the
+    /// sample's scale ([`PolynomialSample::scale`]). If this reproduces too few samples, it may be multiplied by any
+    /// positive scale. The flag is set in the second case. Returns `None` if fewer than half of the wrong samples are
+    /// reproduced.
     pub fn count_predicted(&self, predict: impl Fn(&PolynomialSample) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &PolynomialSample| {
             let predicted = predict(case);

@@ -31,8 +31,8 @@ impl Capture {
         Self { logs_impulses, has_mid: records.has_polynomials, ..Self::default() }
     }
 
-    /// Returns the place of a polynomial: the pair, the pass, and the number within the pair. Returns `None` if the
-    /// reference has no such polynomial.
+    /// Returns the pair and the pass of a polynomial, and its number within the pair. Returns `None` if the reference
+    /// has no such polynomial.
     pub fn locate_polynomial(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;

@@ -230,8 +230,8 @@ impl StepFacts {
         self.right_polynomials < ours.min(theirs).min(self.count_certain_polynomials())
     }
 
-    /// Returns the number of polynomials that depend only on the state before the step: those of the first pass, in
-    /// `continuous-time` up to the first contact.
+    /// Returns the number of polynomials that depend only on the state before the step. These are the polynomials of
+    /// the first pass, or in `continuous-time` those up to the first contact.
     pub(super) fn count_certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());
         let behind = contact.and_then(|hit| self.detections.get(hit.detection_index + 1));

@@ -1,5 +1,5 @@
 //! Finds what the wrong steps of a trace without polynomials have in common: contacts at the end of a step, then
-//! velocities, then positions. An observation names the place to check, without a guess.
+//! velocities, then positions. An observation names what to check, without a guess.
 use super::{Explanation, common_value, contacts::explain_overlaps, new_observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,

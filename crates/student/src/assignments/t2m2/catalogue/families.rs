@@ -1,5 +1,5 @@
 //! Tests that the catalogue is closed under the assignment's symmetries. A mistake with one kind of pair, one end, one
-//! place or one quantity exists for the others, or a reason is given here.
+//! position in a list or one quantity exists for the others, or a reason is given here.
 use super::CATALOGUE;
 use crate::assignments::{
     all::find,
