@@ -24,7 +24,7 @@ const MAX_SHOWN_CALLS: usize = 2;
 pub struct InspectedPass {
     /// The detection pass.
     pub pass: Pass,
-    /// The end positions of the step that the pass uses.
+    /// The positions at the end of the motion that the pass checks.
     pub q_end: Vec<f64>,
     /// The number of pairs that the pass checks.
     pub calls: usize,

@@ -105,7 +105,8 @@ fn compare(
     Ok(outcome)
 }
 
-/// Converts a logged impulse of an undamaged recording. Returns `None` if it does not name a pair.
+/// Returns the impulse that a logged impulse of an undamaged recording describes. Returns `None` if it does not name a
+/// pair.
 fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }

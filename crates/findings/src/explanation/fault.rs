@@ -315,7 +315,7 @@ fosssim_num::closed_set! {
         Unmoved = "some zones that should move stay in place",
         /// Zones that should be moved are stopped.
         Stop = "zones stop although nothing in them is fixed",
-        /// Contacts that share particles are moved one after the other, instead of as one zone.
+        /// Zones that share particles are moved one after the other, instead of as one zone.
         NotMerged = "zones that share particles are moved one after the other, not as one",
         /// Zones that share no particle are moved as one zone.
         Joined = "zones that share no particle are moved as one",

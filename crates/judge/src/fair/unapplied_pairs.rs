@@ -107,8 +107,8 @@ struct NearPairs {
 }
 
 impl NearPairs {
-    /// Finds how many times the force of each pair was applied, if the velocities show it. Returns `None` for an
-    /// implicit integrator, for a scene without penalty forces, and for too many pairs.
+    /// Returns how many times the force of each pair was applied, as far as the velocities show it. Returns `None` for
+    /// an implicit integrator, for a scene without penalty forces, and for too many pairs.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
             // An implicit integrator combines all forces, so the effect of one force cannot be separated.

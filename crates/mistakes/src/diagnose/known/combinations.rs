@@ -78,8 +78,8 @@ impl<'a> Search<'a> {
         self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
-    /// Adds rows to a set of empty stages until it reproduces everything. Returns `None` if it never does, if a row can
-    /// be omitted, or if one of the rows is a correct variant.
+    /// Returns a set of empty stages after rows were added until it reproduces everything. Returns `None` if it never
+    /// does, if a row can be omitted, or if one of the rows is a correct variant.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
@@ -112,10 +112,10 @@ impl<'a> Search<'a> {
         Some(RowCombination { rows: set, equivalent_rows, rival_rows: Vec::new(), samples })
     }
 
-    /// Finds several mistakes of a program whose steps log only states. In such a program one of several mistakes alone
-    /// reproduces nothing more of a step, but all of them together reproduce all of it. Sets of unwritten functions are
-    /// tried first, then one mistake with such functions, then two mistakes. Returns `None` if no set reproduces
-    /// everything, or if two sets do that differ in more than one row.
+    /// Returns several mistakes that together explain a program whose steps log only states. In such a program, one of
+    /// the mistakes alone reproduces nothing more of a step, but all of them together reproduce all of it. Sets of
+    /// unwritten functions are tried first, then one mistake with such functions, then two mistakes. Returns `None` if
+    /// no set reproduces everything, or if two sets do that differ in more than one row.
     fn find_combination(&self) -> Option<RowCombination> {
         let is_candidate = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_candidate).collect();

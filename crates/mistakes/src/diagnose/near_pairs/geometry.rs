@@ -118,8 +118,8 @@ impl<'a> PlacedPair<'a> {
         distance(&later) >= distance(positions)
     }
 
-    /// Returns the boxes of all other bodies whose lower end on an axis is between those of the two, in the order of a
-    /// sweep.
+    /// Returns the boxes of other bodies that begin, on an axis, between the beginnings of the pair's two boxes. They
+    /// are in the order of a sweep.
     pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|bounds| bounds[0][axis]);

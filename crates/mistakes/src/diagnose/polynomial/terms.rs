@@ -283,7 +283,7 @@ fn has_usual_size(weight: f64) -> bool {
     [0.0, 0.25, 0.5, 1.0, 2.0, 4.0].contains(&weight.abs())
 }
 
-/// Rounds weights to multiples of [`WEIGHT_STEP`]. Returns `None` if they are not close to multiples.
+/// Returns the weights, rounded to multiples of [`WEIGHT_STEP`]. Returns `None` if they are not close to multiples.
 fn snap_weights(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
     support
         .iter()

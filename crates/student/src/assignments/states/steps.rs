@@ -3,7 +3,7 @@
 use super::{super::rows::rows, terms::Edit};
 
 rows! {
-    /// A difference of a program in a step.
+    /// A difference between a student's program and the reference in the computation of a step's states.
     StepMistake STEPS [Edit Edit] []
     Wrong Forces "steps.txt" {
         DragQuadratic "drag-quadratic";
