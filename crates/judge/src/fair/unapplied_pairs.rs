@@ -107,8 +107,8 @@ struct NearPairs {
 }
 
 impl NearPairs {
-    /// Returns how many times the force of each pair was applied, as far as the velocities show it. Returns `None` for
-    /// an implicit integrator, for a scene without penalty forces, and for too many pairs.
+    /// Returns the pairs whose force may have been omitted or repeated, and those whose force was provably applied
+    /// once. Returns `None` for an implicit integrator, for a scene without penalty forces, and for too many pairs.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
             // An implicit integrator combines all forces, so the effect of one force cannot be separated.
