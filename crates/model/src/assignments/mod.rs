@@ -30,7 +30,7 @@ fosssim_num::closed_set! {
     pub enum Assignment {
         /// Theme 1, Milestone 1: explicit Euler and simple gravity.
         T1M1,
-        /// Theme 1, Milestone 2: symplectic Euler and all other forces.
+        /// Theme 1, Milestone 2: symplectic Euler, springs, gravitation and drag.
         T1M2,
         /// Theme 1, Milestone 3: the implicit integrators.
         T1M3,
@@ -81,7 +81,7 @@ impl Assignment {
         self.definition().key
     }
 
-    /// Returns the assignment named `key`.
+    /// Returns the assignment with the key, or `None` if no assignment has it.
     pub fn from_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|assignment| assignment.key() == key)
     }

@@ -43,7 +43,7 @@ impl PairKind {
     /// The maximum number of polynomials that a detection call logs.
     pub const MAX_POLYNOMIALS: usize = 4;
 
-    /// Returns the kind's place in [`PairKind::ALL`].
+    /// Returns the kind's index in [`PairKind::ALL`].
     #[inline]
     pub const fn index(self) -> usize {
         self as usize

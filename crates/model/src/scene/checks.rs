@@ -139,7 +139,7 @@ fn check_moving_fixed_particles(parts: &SceneParts<'_, '_>, report: &mut Report)
     }
 }
 
-/// Returns whether two particles start at the same position, if the positions could be read.
+/// Returns whether two particles start at the same position; false if one of the positions could not be read.
 fn are_coincident(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
     parts.start_position(first).zip(parts.start_position(second)).is_some_and(|(first, second)| first == second)
 }
@@ -175,7 +175,7 @@ fn check_force_directions(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// The rule for the severity of a problem about bodies that start at exactly the same place.
+/// How severe a problem is if bodies start at exactly the same position.
 struct ContactRule {
     /// Whether the penalty force acts between the bodies. Its direction is then NaN.
     has_penalty: bool,
@@ -255,7 +255,7 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
             continue;
         }
         let edge_vector = end - start;
-        // The position on the edge is computed as in the penalty force, including its limits.
+        // The position on the edge is computed as in the penalty force, which limits it to the edge.
         let alpha = ((particle.position - start).dot(&edge_vector) / edge_vector.dot(&edge_vector)).clamp(0.0, 1.0);
         let on_it = (start + alpha * edge_vector) - particle.position == Vec2::zeros();
         let at_end = particle.position == start || particle.position == end;

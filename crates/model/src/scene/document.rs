@@ -1,4 +1,4 @@
-//! The scene's elements with their places, and all faults of the XML itself.
+//! The scene's elements with their positions in the text, and all faults of the XML itself.
 //!
 //! quick-xml splits the text into tags. This module checks nesting and the names of elements, `tag` checks attributes.
 //! Nothing is read twice, so the work is proportional to the length of the text.
@@ -14,7 +14,7 @@ use super::{grammar, rule::Rule};
 /// The elements of the text.
 #[derive(Debug, Default)]
 pub(super) struct Document<'t> {
-    /// The place of `<scene` in the text, in bytes, if there is a scene.
+    /// The range of `<scene` in the text, in bytes, if there is a scene.
     pub(super) scene: Option<Range<usize>>,
     /// The known children of the scene in document order.
     pub(super) tags: Vec<Tag<'t>>,
@@ -181,7 +181,8 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    /// Warns if the original joins lines: it joins a name that is followed only by a line feed with the next word.
+    /// Reports a name that is followed by only a line feed. The original joins the lines, and with them the name and
+    /// the first attribute.
     fn warn_joined_name(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));

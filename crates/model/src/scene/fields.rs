@@ -41,17 +41,17 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.raw_attribute(name).is_some()
     }
 
-    /// Returns the place of an attribute's value, or of the element if the attribute is missing.
+    /// Returns the range of an attribute's value in the text, or of the element if the attribute is missing.
     pub(super) fn span(&self, name: &str) -> Range<usize> {
         self.raw_attribute(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
     }
 
-    /// Reports an error about an attribute's value: `NAME of WHO MESSAGE`.
+    /// Reports an error about an attribute's value, in the form `NAME of ELEMENT MESSAGE`.
     pub(super) fn report_error(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.report_problem(Severity::Error, name, || (message.to_owned(), help.into()));
     }
 
-    /// Reports a warning about an attribute's value: `NAME of WHO MESSAGE`.
+    /// Reports a warning about an attribute's value, in the form `NAME of ELEMENT MESSAGE`.
     pub(super) fn warn(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.report_problem(Severity::Warning, name, || (message.to_owned(), help.into()));
     }
@@ -121,7 +121,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.number(attribute)
     }
 
-    /// Returns a scalar with a default.
+    /// Returns an optional scalar, or the default if the attribute is missing.
     pub(super) fn scalar_or(&mut self, name: &str, default: f64) -> Option<f64> {
         match self.raw_attribute(name) {
             Some(attribute) => self.number(attribute),

@@ -38,7 +38,7 @@ pub(super) fn rule(name: &str) -> Option<&'static Rule> {
     rules().find(|rule| rule.name == name)
 }
 
-/// Returns the known element whose name is similar to `name`.
+/// Returns the known element whose name is most similar to `name`, or `None` if none is similar.
 pub(super) fn similar_element(name: &str) -> Option<&'static str> {
     find_closest(name, rules().map(|rule| rule.name))
 }
@@ -55,8 +55,9 @@ const COMMON_MISSPELLINGS: [(&str, &str); 8] = [
     ("vortex", "vortexforce"),
 ];
 
-/// Returns the candidate that `word` probably means: equal except for case and punctuation, a common alternative name,
-/// an abbreviation, or within a few typos (a third of the letters, at most two).
+/// Returns the candidate that `word` probably means. It equals the word except for case and punctuation, is meant by a
+/// common alternative name, begins with the word, or differs by a few typos (a third of the letters, at most two).
+/// Returns `None` if no candidate does.
 pub fn find_closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const MAX_LETTERS: usize = 40;
     if word.len() > MAX_LETTERS {

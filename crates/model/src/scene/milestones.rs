@@ -21,11 +21,12 @@ pub enum UnknownPart {
     Force(ForceKind),
     /// An unknown collision type.
     Collision(CollisionType),
-    /// The contest's detection outside the contest, which programs ignore.
+    /// The contest's detection in a scene of another assignment; programs ignore it.
     Contest,
-    /// A detection other than the contest's, in the contest.
+    /// In a scene of the contest: another detection; programs then find no pairs.
     AllPairs,
-    /// The thickness of the penalty force, in the contest.
+    /// In a scene of the contest: a thickness of the penalty force other than 0; programs look for pairs without a
+    /// layer.
     Thickness(f64),
 }
 
@@ -98,8 +99,8 @@ impl Scene {
         Assignment::ALL.into_iter().filter(|assignment| self.unknown_features(*assignment).next().is_none())
     }
 
-    /// Returns the first assignment of the course whose programs can run the scene; otherwise the assignment that added
-    /// its collision handling.
+    /// Returns the first assignment of the course whose programs can run the scene. If there is none, returns the
+    /// assignment that added the scene's collision type. A scene with the contest's detection belongs to the contest.
     pub fn assignment(&self) -> Assignment {
         match self.collision {
             Collision::Penalty { detection: CollisionDetection::Contest, .. } => Assignment::T2M3,

@@ -3,8 +3,8 @@
 //! This module does not use the simulator or the file system. It takes and returns text. The grammar is that of
 //! `scene-format.md`.
 //!
-//! [`read`] is for authors of scenes: it reports all problems, with places and advice, and rejects scenes that the
-//! original would silently misread. [`original::read`] is for compatibility: it accepts exactly what the original
+//! [`read`] is for authors of scenes: it reports all problems, with their positions and advice, and rejects scenes that
+//! the original would silently misread. [`original::read`] is for compatibility: it accepts exactly what the original
 //! accepts and rejects the rest in the original's words.
 
 mod checks;

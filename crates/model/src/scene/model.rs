@@ -94,7 +94,7 @@ impl Collision {
         }
     }
 
-    /// Returns the coefficient of restitution, or 1 if no collision has a response.
+    /// Returns the coefficient of restitution, or 1 if the collision type has no response.
     pub const fn restitution(&self) -> f64 {
         match *self {
             Self::Simple { restitution } | Self::ContinuousTime { restitution } | Self::Hybrid { restitution, .. } => {
@@ -154,7 +154,7 @@ pub struct Edge {
     pub radius: f64,
 }
 
-/// An infinite obstacle through a point.
+/// An infinite obstacle whose boundary is a line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HalfPlane {
     /// A point on its boundary.

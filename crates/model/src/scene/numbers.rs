@@ -85,7 +85,7 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Returns the offsets at which a number's sign, digits and fraction end, or `None` if there are no digits.
+/// Returns the offset at which a number's sign, digits and fraction end, or `None` if there are no digits.
 pub(super) fn mantissa_end(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let integer_digits = count_digits(text, sign);

@@ -1,4 +1,4 @@
-//! Describes the problems of a scene: each has a fault, a place and a correction.
+//! Describes the problems of a scene: each has a position, a description of the fault and perhaps a correction.
 use std::{fmt, ops::Range};
 
 /// The maximum number of errors, and of warnings, that are kept for one scene. Further ones are only counted.
@@ -48,7 +48,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The reason why a scene was rejected: its errors and warnings, in the order of their places.
+/// The reason why a scene was rejected: its errors and warnings, in the order of their positions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problems {
     /// The scene's name, as the caller gave it.
@@ -60,7 +60,7 @@ pub struct Problems {
 }
 
 impl Problems {
-    /// Returns a rejection of the whole text, with its start as the place.
+    /// Returns a rejection of the whole text, whose position is the start of the text.
     pub(super) fn from_whole_text(source: &str, message: String, help: &str) -> Self {
         Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).with_help(help)], omitted: 0 }
     }
@@ -82,7 +82,7 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-// The initial state of a problem: an error at the start of the text. The report sets the rest.
+// A problem is created as an error in line 1, column 1. The report sets its severity and position.
 impl Problem {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
         let (severity, message) = (Severity::Error, message.into());
@@ -153,7 +153,7 @@ impl Report {
         self.kept_counts[Severity::Error as usize] > 0
     }
 
-    /// Returns the problems in the order of their places, and the number of further problems. The spans refer to
+    /// Returns the problems in the order of their positions, and the number of further problems. The spans refer to
     /// `text`.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));

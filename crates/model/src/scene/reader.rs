@@ -17,7 +17,7 @@ pub const MAX_SCENE_BYTES: usize = 8 << 20;
 pub struct LoadedScene {
     /// The scene; all indices are valid, all numbers finite.
     pub scene: Scene,
-    /// Warnings for the author to review, in the order of the places.
+    /// Warnings for the author to review, in the order of their positions.
     pub warnings: Vec<Problem>,
 }
 
@@ -79,7 +79,7 @@ fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     Cow::Owned(readable)
 }
 
-/// Checks that the original reads the same scene.
+/// Reports an error unless the original reads the same scene.
 fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
     let difference = match original::read(text) {
         Ok(original) if original.scene == *scene => return,

@@ -1,4 +1,4 @@
-//! One tag: its attributes as written, with their places, and all faults of their form and names.
+//! One tag: its attributes as written, with their positions, and all faults of their form and names.
 //!
 //! Values are neither translated nor interpreted here; `fields` does that.
 use std::{borrow::Cow, collections::BTreeSet, ops::Range};
@@ -13,7 +13,7 @@ use super::{grammar, rule::Rule};
 pub(super) struct Attribute<'t> {
     pub(super) name: &'t str,
     pub(super) value: &'t str,
-    /// The bytes of the value, without its quotation marks unless the value is empty.
+    /// The range of the value in the text. It includes the quotation marks only if the value is empty.
     pub(super) span: Range<usize>,
 }
 
@@ -98,7 +98,7 @@ impl<'t> Tag<'t> {
     }
 }
 
-/// Returns the fault in the form of an attribute. `start` is the offset of `inner` in the text.
+/// Returns the problem of an attribute that is not written correctly. `start` is the offset of `inner` in the text.
 fn syntax_problem(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),

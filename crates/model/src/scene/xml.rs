@@ -60,7 +60,7 @@ impl SceneParts<'_, '_> {
     }
 }
 
-/// Reads all elements. Returns `None` if the scene is of a kind that is not simulated here.
+/// Reads all elements. Returns `None` if the scene consists of rigid bodies, which are not simulated.
 pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<SceneParts<'d, 't>> {
     let mut reading = SceneBuilder { document, report };
     if reading.has_rigid_bodies() {
@@ -111,7 +111,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         tags.map(read).collect()
     }
 
-    /// Returns the first element of a kind of which only one is used.
+    /// Reads the first element of a kind, and reports further ones. Returns `None` if there is no element.
     fn read_first<T>(
         &mut self,
         name: &str,
@@ -137,7 +137,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         self.read_first(name, read).map_or(Some(None), |part| part.value.map(Some))
     }
 
-    /// Returns a single required element.
+    /// Reads a single required element, and reports its absence.
     fn require<T>(
         &mut self,
         name: &str,
@@ -165,7 +165,8 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         }
     }
 
-    /// Returns whether the scene belongs to the unfinished rigid-body stub. Also reports wrong types.
+    /// Returns whether the scene's type is that of the unfinished rigid-body stub. Also reports wrong types, and rigid
+    /// bodies in other scenes.
     fn has_rigid_bodies(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";

@@ -34,8 +34,7 @@ impl Bodies {
     /// Copies the scene's constants.
     ///
     /// # Panics
-    /// Panics if an edge or a force names an object that the scene does not have; the strict reader rejects such
-    /// scenes.
+    /// Panics if an edge names a particle that the scene does not have; the strict reader rejects such scenes.
     pub fn new(scene: &Scene) -> Self {
         let particles = &scene.particles;
         for (index, edge) in scene.edges.iter().enumerate() {

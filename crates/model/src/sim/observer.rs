@@ -140,7 +140,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 /// Two observers receive the same events, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     forward_all!(self => self.0, self.1);
-    /// Returns the needs of one observer, if the other needs nothing.
+    /// Returns the needs of one observer if the other needs nothing, and every call otherwise.
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         if matches!(self.1.wanted_pairs(), WantedPairs::Nothing) {
             self.0.wanted_pairs()

@@ -96,7 +96,7 @@ impl PolynomialBytes {
         self.count_added(4 + 8 * coefficients.len(), 1);
     }
 
-    /// Returns at least `bytes` bytes of room after the list.
+    /// Returns the free memory after the list, at least `bytes` bytes.
     #[inline]
     pub(super) fn reserve(&mut self, bytes: usize) -> &mut [u8] {
         if self.bytes.len() - self.used_bytes < bytes {

@@ -3,7 +3,7 @@
 /// When root searches run, although certificates may make them unnecessary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootSearch {
-    /// A search runs only if no certificate excludes an impact. The traces are the same.
+    /// A search runs only if no certificate excludes an impact. The traces are the same as with all searches.
     #[default]
     OnDemand,
     /// A search runs for every pair.

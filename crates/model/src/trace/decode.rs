@@ -36,6 +36,7 @@ fn decode_integer(bytes: &[u8]) -> i32 {
 }
 
 /// Replaces `out` by the next `count` numbers, or fewer if the source ends. An incomplete number stays in the source.
+/// Returns whether there were enough numbers.
 pub(crate) fn decode_numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
     out.clear();
     while out.len() < count {
@@ -72,8 +73,8 @@ pub(crate) fn decode_impulses<R: Read>(source: &mut Source<R>, count: usize, out
     available
 }
 
-/// Returns the size of a short polynomial (at most 6 coefficients, completely in `bytes`), and the bytes after its
-/// size.
+/// Returns the size of the next polynomial, and the bytes after its size. Returns `None` if the polynomial has more
+/// than 6 coefficients or is not completely in `bytes`.
 #[inline(always)]
 fn decode_short_size(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;

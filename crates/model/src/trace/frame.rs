@@ -110,7 +110,7 @@ impl LoggedImpulse {
         PairKind::from_code(self.kind)
     }
 
-    /// Returns the impulse's pair, or `None` if such a pair is impossible.
+    /// Returns the impulse's pair, or `None` if its kind is unknown or an index is negative.
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
         Some(Pair { kind: self.kind()?, first, second })

@@ -131,7 +131,7 @@ impl<R: Read> Reader<R> {
         self.notes.extend(odd);
     }
 
-    /// Returns the oddity of an impulse, if it has one.
+    /// Returns the fault of an impulse, if it has an unknown kind or names an object that the scene does not have.
     fn find_format_error(&self, number: u64, impulse: &LoggedImpulse) -> Option<TraceFormatError> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {

@@ -27,7 +27,7 @@ impl<'e> Item<'e> {
             .map(move |(number, element)| Self { element, kind, number: Some(number), exit_code })
     }
 
-    /// Returns an element of a kind of which only the first is used.
+    /// Returns the item of an element of a kind of which only the first element is used.
     pub(super) fn from_element(element: &'e Element<'e>, kind: &'static str) -> Self {
         Self { element, kind, number: None, exit_code: 1 }
     }
@@ -67,7 +67,7 @@ impl<'e> Item<'e> {
         self.require(name, "", "boolean", values::parse_boolean)
     }
 
-    /// Reads an optional scalar, whose message lacks `value of`.
+    /// Reads the optional radius. The message about a bad value lacks `value of`.
     pub(super) fn read_radius(&self, default: f64) -> Result<f64, Rejection> {
         self.read_optional("radius", default, "", "scalar")
     }

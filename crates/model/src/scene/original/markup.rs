@@ -28,8 +28,8 @@ pub(super) fn join_lines(bytes: &[u8]) -> Vec<u8> {
     text.split(|&byte| byte == b'\n').collect::<Vec<_>>().concat()
 }
 
-/// Reads the children of the first root named `scene`, or nothing if there is no such root. The error is the text of
-/// the original's exception.
+/// Reads the children of the first root named `scene`. Returns `None` if there is no such root. The error is the text
+/// of the original's exception.
 pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static str> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
     let mut cursor = Cursor { text, offset: 0 };
@@ -90,7 +90,7 @@ impl<'t> Cursor<'t> {
         self.text.get(self.offset + ahead).copied().unwrap_or(0)
     }
 
-    /// Returns the rest of the text, and never reads past the end.
+    /// Returns the rest of the text, which is empty after the end.
     fn rest(&self) -> &'t [u8] {
         self.text.get(self.offset..).unwrap_or_default()
     }
@@ -125,8 +125,8 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// Returns the node that follows a `<`, unless it is a closing tag: an element and whether it has contents, or a
-    /// node to ignore.
+    /// Reads the node after a `<` that does not begin a closing tag. Returns an element and whether it has contents, or
+    /// `None` for a node that is ignored.
     fn read_node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
         match self.peek(0) {
             b'?' => {
@@ -154,7 +154,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// Reads past the `>` that is not in brackets.
+    /// Advances past the next `>` that is not in brackets.
     fn skip_document_type(&mut self) -> Result<(), &'static str> {
         let mut depth = 0_usize;
         loop {

@@ -11,8 +11,8 @@ use crate::{assignments::ForceKind, scene::forces::AttributeSource};
 /// # Errors
 ///
 /// Fails with the original's message if the original rejects the scene or crashes, and with this program's message if
-/// the original would read out of bounds. If there are both, a message of the original comes first, wherever it is in
-/// the file.
+/// the original would read out of bounds. If a scene has problems of both kinds, the original's message is returned,
+/// wherever its cause is in the file.
 pub fn read(bytes: &[u8]) -> Result<OriginalScene, Rejection> {
     let text = markup::join_lines(bytes);
     let elements = markup::parse(&text).map_err(Rejection::from_crash)?.ok_or_else(|| {
@@ -81,7 +81,8 @@ fn check_type(written: &[u8]) -> Result<(), Rejection> {
     }
 }
 
-/// The repeated elements, and the first of them for which the original reads garbage.
+/// The elements that may be repeated, and a message about the first index with which the original would read out of
+/// bounds.
 struct RepeatedElements<'e> {
     elements: &'e [Element<'e>],
     undefined: Option<String>,

@@ -20,12 +20,12 @@ pub(super) fn parse_scalar(text: &[u8]) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Returns a 32-bit integer.
+/// Returns a 32-bit integer, or `None` if the text does not start with one.
 pub(super) fn parse_integer(text: &[u8]) -> Option<i32> {
     i32::try_from(parse_long(text)?).ok()
 }
 
-/// Returns a truth value: an integer that is 0 or 1.
+/// Returns a truth value, or `None` if the text does not start with an integer that is 0 or 1.
 pub(super) fn parse_boolean(text: &[u8]) -> Option<bool> {
     match parse_long(text)? {
         0 => Some(false),

@@ -7,7 +7,8 @@ use super::super::{
 };
 use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_with_steps, polynomial::Polynomial};
 
-/// Returns the time of impact. It is computed only if it is needed.
+/// Returns the time of impact, or [`ImpactTime::Excluded`] if times are needed only on demand and a certificate
+/// excludes an impact within the step.
 ///
 /// # Errors
 /// Fails with [`StepError::RootSearch`] if a root search would never end.

@@ -96,7 +96,7 @@ impl PairMotion {
         }
     }
 
-    /// Returns the kind of the second object.
+    /// Returns the kind of the pair.
     pub const fn kind(&self) -> PairKind {
         match self {
             Self::Particles { .. } => PairKind::ParticleParticle,

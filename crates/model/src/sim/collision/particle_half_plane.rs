@@ -47,7 +47,8 @@ pub(super) fn response(input: &ResponseInput<'_>, i: usize, n: Vec2) -> Response
     Response { gain: None, loss: [Some(change), None] }
 }
 
-/// Returns the simple detection: the vector to the boundary, if the disc overlaps it and approaches it.
+/// Returns the vector from the disc's center to the boundary, if the disc overlaps it and approaches it (simple
+/// detection).
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plane: usize) -> Option<Vec2> {
     let q = unit(bodies.normals[half_plane]);

@@ -37,7 +37,7 @@ pub(super) fn response(input: &ResponseInput<'_>, i: usize, j: usize, n: Vec2) -
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
 }
 
-/// Returns the simple detection: the vector between the centers, if the discs overlap and approach.
+/// Returns the vector between the centers, if the discs overlap and approach each other (simple detection).
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
     let n = vector_at(x, j) - vector_at(x, i);

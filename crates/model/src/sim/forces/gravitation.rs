@@ -4,8 +4,8 @@ use crate::sim::matrix::add_coupling;
 use fosssim_num::vector::{divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
-/// Adds the force `G m m' / r^2` along the line from the first to the second particle. The result is NaN if they
-/// coincide.
+/// Adds the gradient of the attraction. Its size is `G m m' / r^2`, along the line between the particles. The result is
+/// NaN if they coincide.
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
     let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);

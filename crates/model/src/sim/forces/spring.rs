@@ -12,7 +12,7 @@ fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
     (l, divide(d, l))
 }
 
-/// Adds `k (l - l0) n` and the damping `b (n . w) n` on the endpoints; both are always added.
+/// Adds the elastic part `k (l - l0) n` and the damping part `b (n . w) n` for both endpoints, even if a part is zero.
 pub(super) fn add_gradient(
     [a, b]: [usize; 2],
     stiffness: f64,

@@ -37,7 +37,7 @@ struct NewtonWork {
 }
 
 impl NewtonWork {
-    /// Counts an iteration. Returns whether more are allowed.
+    /// Counts an iteration. Returns whether it is within the limit.
     fn iterate(&mut self) -> bool {
         self.performed_work += self.per_iteration;
         self.performed_work <= self.limit

@@ -1,4 +1,5 @@
-//! The broad phase finds the pairs that may be closer than their radii and a margin, without checking all pairs.
+//! The broad phase finds the pairs that may be closer than the sum of their radii and a margin, without checking all
+//! pairs.
 //!
 //! Particles are sorted into strips by size ([`strips`]); edges, and particles of larger sizes, search for smaller
 //! particles in the rectangle that they reach. If particles are spread evenly, the time is proportional to their
@@ -181,7 +182,7 @@ fn full_range(_: [f64; 2]) -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
-/// Returns slightly more than `reach`, to cover all rounding on the way to a vector between two points.
+/// Returns slightly more than `reach`, to cover all rounding errors of a vector between two points.
 fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
     let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
     reach * (1.0 + 1e-9) + most * 1e-12 + MIN_REACH
@@ -203,7 +204,7 @@ fn enclosing_rectangle(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     Some(Rectangle { low, high: Vec2::new(one.x.max(other.x), one.y.max(other.y)) + room })
 }
 
-/// Adds the particles of a size class that an edge may reach.
+/// Adds the particles of a size class that an edge may reach. Returns the number of checked particles.
 fn add_particles_near_edge(
     size: &Strips,
     radii: &[f64],

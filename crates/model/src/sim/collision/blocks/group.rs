@@ -25,8 +25,8 @@ pub(super) const EDGE_ROW_LENGTH: usize = 20;
 pub(super) const EDGE_FACTS_INDEX: usize = 17;
 
 /// The length of the row of a pair of particles, or of a pair with a half-plane: the parabola's coefficients, the known
-/// facts, the line's coefficients, and padding. A polynomial is read soon after it is stored, which is fast if both
-/// access it in the same pieces.
+/// facts, the line's coefficients, and padding. A row is read soon after it is stored, which is fast if it is read in
+/// the same pieces.
 pub(super) const SHORT_ROW_LENGTH: usize = 8;
 
 /// The index of the facts in the row.

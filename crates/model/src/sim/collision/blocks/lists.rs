@@ -39,7 +39,7 @@ pub(super) enum RefreshResult {
     TooLarge,
 }
 
-/// Two vectors and a number per lane.
+/// The position, displacement and radius of one particle per lane.
 type MotionLanes<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
 impl Lists {

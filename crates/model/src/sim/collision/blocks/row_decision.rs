@@ -15,7 +15,7 @@ use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 
 crate::drops_leading!();
 
-/// The maximum number of bytes of a pair with an edge.
+/// The maximum number of bytes that the polynomials of a pair with an edge take.
 pub(super) const MAX_EDGE_BYTES: usize = 4 * 4 + 8 * 17;
 pub(super) const MAX_TWO_POLYNOMIAL_BYTES: usize = 2 * 4 + 8 * 5;
 
@@ -56,8 +56,8 @@ impl<'a> LoggedRows<'a> {
         self.record_result(found, pair, cursor)
     }
 
-    /// Stores the result of a pair. Returns whether it is a hit, after which the position follows it, or an endless
-    /// search, which is not logged.
+    /// Stores the result of a pair. Returns whether there is one: a hit, or an endless search, whose polynomials are
+    /// not logged. The cursor is then after the pair.
     #[inline(always)]
     fn record_result(&mut self, hit: Result<Option<Impulse>, StepError>, pair: Pair, cursor: &mut PassCursor) -> bool {
         if matches!(hit, Ok(None)) {
@@ -105,8 +105,8 @@ impl<'a> LoggedRows<'a> {
     }
 }
 
-/// Writes a polynomial whose coefficients are at the front. The maximum number of coefficients is always written, but
-/// only the bytes of the remaining ones count.
+/// Writes the polynomial whose coefficients begin `row`. The maximum number of coefficients is always written, but only
+/// the bytes of those that are kept count.
 #[inline(always)]
 fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
     // The number of leading small coefficients; `LENGTH` if all are small.
@@ -121,7 +121,7 @@ fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row:
     *used += 4 + 8 * (LENGTH - dropped);
 }
 
-/// Applies the certificate to a pair with an edge, and the root finder if the certificate has no answer.
+/// Returns the hit of a pair with an edge, if there is one. Uses the root finder if the certificate has no answer.
 #[inline(never)]
 pub(super) fn decide_edge(
     input: &PassInput<'_>,
@@ -132,7 +132,7 @@ pub(super) fn decide_edge(
     decide_polynomials(input, counts, pair, row, [5, 3, 3, 6])
 }
 
-/// Decides a pair without an edge.
+/// Returns the hit of a pair without an edge, if there is one.
 #[inline(never)]
 pub(super) fn decide_two_polynomials(
     input: &PassInput<'_>,
@@ -144,7 +144,8 @@ pub(super) fn decide_two_polynomials(
     decide_polynomials(input, counts, pair, &[a, b, c, d, e], [3, 2])
 }
 
-/// Decides polynomials of the given lengths, small leading coefficients included.
+/// Returns the hit of a pair, if there is one. Its polynomials have the given lengths, small leading coefficients
+/// included.
 #[inline(always)]
 fn decide_polynomials<const COUNT: usize>(
     input: &PassInput<'_>,

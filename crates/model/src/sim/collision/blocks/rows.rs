@@ -17,7 +17,7 @@ use crate::sim::{
 use fosssim_num::lanes::{LaneWork, Lanes, MAX_LANES, Simd};
 use std::ops::Range;
 
-/// The pairs from a position on, up to the next hit.
+/// A search through the pairs from a position on, up to the next hit.
 pub(super) struct HitSearch<'a> {
     pub lists: &'a Lists,
     pub group: &'a mut PairGroup,

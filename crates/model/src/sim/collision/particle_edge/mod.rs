@@ -34,8 +34,8 @@ pub(super) fn response(input: &ResponseInput<'_>, i: usize, [first, second]: [us
     exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
 }
 
-/// Returns the simple detection: the vector to the nearest point of the edge, if the disc overlaps the edge and
-/// approaches it.
+/// Returns the vector from the disc's center to the nearest point of the edge, if the disc overlaps the edge and
+/// approaches it (simple detection).
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
     let [first, second] = bodies.edges[edge];

@@ -1,8 +1,8 @@
 //! Reproduces the order in which the C++ library's sort leaves entries with equal keys.
 //!
-//! Introsort is quicksort with a median of three, heapsort if the recursion is too deep, and a final insertion sort. Up
-//! to [`MAX_INSERTION_LENGTH`] entries with equal keys keep their order. Longer lists do not, and the original's sums
-//! depend on the order.
+//! Introsort is quicksort with a median of three, heapsort if the recursion is too deep, and a final insertion sort.
+//! Entries with equal keys keep their order only in lists of up to [`MAX_INSERTION_LENGTH`] entries. The original's
+//! sums depend on the order.
 
 /// The maximum length of parts that are left to the final insertion sort.
 const MAX_INSERTION_LENGTH: usize = 16;

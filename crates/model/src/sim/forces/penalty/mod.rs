@@ -81,7 +81,7 @@ impl PenaltyParameters {
         }
     }
 
-    /// Returns whether bodies at `distance` repel each other.
+    /// Returns whether bodies at `distance` repel each other, if the force acts at distances below `reach`.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {
         distance < reach && !(self.is_contest && distance < CONTEST_MIN_DISTANCE)

@@ -51,8 +51,8 @@ impl PenaltyPairs {
         }
     }
 
-    /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
-    /// order in which their forces are added. In large scenes few other pairs are included.
+    /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than the sum of their radii and the
+    /// thickness, in the order in which their forces are added. In large scenes few other pairs are included.
     pub fn visit_pairs(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;

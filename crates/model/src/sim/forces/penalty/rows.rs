@@ -9,7 +9,7 @@ pub(super) struct Rows {
     /// The start of each row in `boxes_of_rows`, and the end of the last row.
     starts: Vec<usize>,
     boxes_of_rows: Vec<usize>,
-    /// The place after the current box in each row that it is in.
+    /// For each row, the index in `boxes_of_rows` after the boxes visited so far.
     later: Vec<usize>,
     /// The boxes that overlap the current one.
     found: Vec<usize>,
@@ -38,7 +38,7 @@ impl Rows {
     /// Lists the boxes of each row.
     fn collect_boxes(&mut self) {
         let Self { spans, starts, boxes_of_rows: boxes, .. } = self;
-        // While rows are filled, the entry after that of a row is the place of its next box.
+        // While rows are filled, the entry after that of a row is the index of its next box.
         let rows = spans.iter().map(|[_, last]| last + 1).max().unwrap_or(0);
         starts.clear();
         starts.resize(rows + 2, 0);
