@@ -15,10 +15,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The maximum time without progress after the first signal, after which the program ends.
+/// The time without progress after the first signal after which the program ends.
 const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
-/// Returns the temporary files that an interrupt has to remove.
+/// Locks and returns the list of the temporary files that an interrupt has to remove.
 pub(super) fn lock_pending_files() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     static PENDING_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
     PENDING_FILES.lock().unwrap_or_else(PoisonError::into_inner)
@@ -36,7 +36,7 @@ pub(super) fn clean_up_when_interrupted() {
 
 /// Removes incomplete outputs, and ends the program.
 fn end_program() -> ! {
-    // The code below could also block, on a lock or on a reader of the output.
+    // The code below may block, on a lock or on a reader of the output. The program then ends after a second.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());

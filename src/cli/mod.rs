@@ -20,7 +20,7 @@ use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
 /// Runs the command that the program's arguments name.
 pub fn main() -> ExitCode {
-    // A copy of this program with a pinned mistake is nothing but a submission.
+    // A copy of this program with a pinned mistake acts only as a submission.
     if let Some(mistake) = sample::pinned_mistake::pinned_mistake() {
         return sample::main(std::env::args_os(), Some(mistake));
     }

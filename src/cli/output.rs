@@ -276,7 +276,7 @@ impl Folder {
         Ok(Self(opened))
     }
 
-    /// Opens a folder that exists; `None` if it does not exist.
+    /// Opens an existing folder; `None` if it does not exist or cannot be opened.
     pub(super) fn open_existing(name: &Path) -> Option<Self> {
         files::Folder::open_to_write(name).ok().map(Self)
     }
@@ -286,7 +286,7 @@ impl Folder {
         self.0.given_path().display().to_string()
     }
 
-    /// Returns whether the folder has a file with a name.
+    /// Returns whether the folder has a file with this name.
     pub(super) fn contains(&self, name: &str) -> bool {
         self.0.contains(OsStr::new(name))
     }

@@ -111,7 +111,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
     }
 }
 
-/// Returns an empty collection for wrong steps, if the report shows wrong steps.
+/// Returns the collector of the wrong steps that the report shows. Fails if the scene lacks a requested step.
 fn collect_wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.step_count();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {

@@ -37,7 +37,8 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
     Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Runs a program on scenes that make every term of every formula visible, and also on the given scenes.
+/// Runs a program on scenes that make every term of every formula visible, and also on the given scenes. Returns `None`
+/// if the user stopped it.
 fn explain_program(
     program: &Path,
     scenes: &[PathBuf],

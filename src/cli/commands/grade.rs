@@ -205,7 +205,7 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Returns the file for a scene's trace that is not accepted; `None` if traces are not kept.
+    /// Returns the file for the trace of a scene that is not accepted; `None` if traces are not kept.
     fn trace_place(&self, submission: &str, scene: &str) -> Option<FilePlace> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(FilePlace::new(folder, format!("traces/{}/{}.bin", to_file_name(submission), scene_file_name(scene))))
@@ -359,8 +359,8 @@ impl GradingSession<'_> {
     }
 }
 
-/// Returns the newest modification time below each submission, and the submission's size. If they change, the
-/// submission has changed.
+/// Returns for each submission the newest modification time of its files, and their total size. Returns `None` for a
+/// submission that cannot be read or has too many files.
 fn find_change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),

@@ -29,7 +29,7 @@ pub(super) struct LastRun {
 }
 
 impl LastRun {
-    /// Reads what the last grading of these submissions on the same suite accepted.
+    /// Reads which scenes the last grading of these submissions on the same suite accepted.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
         let file = folder.map(|folder| FilePlace::new(folder, LAST_RUN_FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
@@ -51,7 +51,7 @@ impl LastRun {
         (!self.accepted_scenes.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }
 
-    /// Returns whether any scene of the submission was not accepted.
+    /// Returns whether a scene of the submission was not accepted, or nothing is known about the submission.
     pub(super) fn has_failed(&self, submission: &str) -> bool {
         self.accepted_scenes.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
@@ -74,7 +74,7 @@ impl LastRun {
     }
 }
 
-/// Returns this program's folder in the user's cache.
+/// Returns this program's folder in the user's cache, or `None` if the environment names no folder.
 fn cache_folder() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;

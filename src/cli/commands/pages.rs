@@ -38,8 +38,8 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Creates the value for pages in the folder for results. Without such a folder, cards are kept only during the
-    /// grading.
+    /// Prepares pages in the folder for results. Without such a folder, no pages are written, and cards are kept only
+    /// during the grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let (cards, temporary) = match folder {
             Some(folder) => (FilePlace::new(folder, "cards"), None),
@@ -119,7 +119,7 @@ const RECORDING_NOTE: &str = "The verdict compares with the recording, where nea
     wrong by themselves, and which only follow from others.";
 
 /// Draws the card of a graded scene. If the trace was compared with a recording, each step is judged again for the
-/// card, from the trace's own state.
+/// card, from the trace's own state. Returns `None` if the hints show only the verdict, or if this judgement fails.
 pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;

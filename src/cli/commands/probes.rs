@@ -304,8 +304,8 @@ fn find_last_line(stderr: &[u8]) -> String {
     last.map(|line| format!("; its standard error ends with: {}", to_one_line(line))).unwrap_or_default()
 }
 
-/// Finds what the failing scenes have in common. `ends` has for each scene how the program ended, and the number of
-/// complete steps.
+/// Finds what the failing scenes have in common, if scenes fail. `ends` has for each scene how the program ended, and
+/// the number of complete steps.
 fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
     let ends: Vec<_> = ends.iter().map(|(ended, steps)| (FailureKind::from_end(ended), *steps)).collect();
     if ends.iter().all(|(failing, _)| failing.is_none()) {
@@ -322,7 +322,7 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     locate_failure(&scenes.collect::<Vec<_>>())
 }
 
-/// Returns the likely mistakes that explain all wrong traces together, and the keys of those that correct traces
+/// Returns the likely mistakes that explain all wrong traces together, and the keys of the mistakes that correct traces
 /// refute.
 fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);

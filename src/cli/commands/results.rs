@@ -91,13 +91,12 @@ pub(super) fn find_requested_pages(
     let is_asked = arguments.staff_page.is_some()
         || arguments.published_page.is_some()
         || reports.iter().any(|report| report.format == Format::Html);
-    // Pages of a class for students may be requested later, and the class is not graded again for them. Therefore they
-    // are always prepared.
+    // Student pages of a class may be requested later, without grading it again. They are therefore always prepared.
     let for_students = arguments.reader == Audience::Student || is_class;
     (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
 
-/// Writes the results of a grading to these places.
+/// The results of a grading, and the places to which they are written.
 pub(super) struct Results<'a> {
     /// The folder for results; `None` if there is none.
     pub(super) folder: Option<&'a Path>,

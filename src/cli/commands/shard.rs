@@ -22,7 +22,7 @@ const SHARD_FILE: &str = "shard.json";
 /// wrong.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// The version of this file's schema.
+/// The version of the schema of the shard's file.
 const SCHEMA: u32 = 1;
 
 /// The inputs that must be the same for all shards of a grading.
@@ -160,8 +160,7 @@ impl Sharding {
         select_own(self.shard.number, self.shard.total, &all).cloned().collect()
     }
 
-    /// Creates the folder of the shard. If an earlier grading left a file there that shows its end, the file is
-    /// removed.
+    /// Creates the folder of the shard. Removes the file by which an earlier grading marked the shard as complete.
     ///
     /// # Errors
     ///

@@ -172,7 +172,7 @@ fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
     Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
 }
 
-/// Returns the values that differ, as text.
+/// Returns the values that differ in the wrong steps, as text, if there are any.
 fn list_differences(scene: &Scene, trace: &[u8]) -> Option<String> {
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };

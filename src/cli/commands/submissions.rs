@@ -106,8 +106,8 @@ impl<'a> Search<'a> {
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Returns whether a folder is a single submission. It then contains the program, or the first file that the
-    /// suite's build needs.
+    /// Returns whether a folder is a single submission. It then contains the program, or a file with which the suite's
+    /// build begins.
     fn is_submission(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };

@@ -63,7 +63,7 @@ fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
 }
 
 /// Measures what the scenes contain, on all cores. Scenes that can't be simulated to their end are left out, because
-/// `undecided` contains them.
+/// [`find_undecided`] reports them.
 fn measure_coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().filter_map(|task| Coverage::for_scene(&task.scene).ok());

@@ -212,7 +212,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     text
 }
 
-/// Lists the known mistakes that no scene shows.
+/// Describes how many known mistakes the scenes show, by area, and lists those that no scene or few scenes show.
 fn describe_mistakes(parts: &[VisibleMistakes], style: Style) -> String {
     if parts.is_empty() {
         return String::new();

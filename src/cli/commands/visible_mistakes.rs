@@ -28,10 +28,11 @@ pub(super) struct VisibleMistakes {
     pub(super) rarely_visible: Vec<&'static str>,
 }
 
-/// The maximum number of scenes listed for a mistake. That many show it reliably.
+/// The maximum number of scenes that are counted for a mistake. So many scenes show the mistake reliably.
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
-/// Returns the areas of the assignment, in the order of the catalogue.
+/// Returns for each area of the assignment which of its mistakes the plan's scenes show. The areas are in the order of
+/// the catalogue.
 pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
     let written = |scene: &Scene, student: Student| {
         student::record_limited_trace(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)

@@ -25,7 +25,7 @@ pub(in crate::cli) struct SceneInput {
 ///
 /// # Errors
 ///
-/// Fails if the scene can't be read or has errors. The message lists all errors with their places.
+/// Fails if the scene can't be read or has errors. The message lists all errors with their positions.
 pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
     let shown = printable_name(name);
     if name == Path::new("-") {

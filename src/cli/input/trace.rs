@@ -148,7 +148,8 @@ const fn is_gzip(start: &[u8]) -> bool {
     matches!(start, [0x1f, 0x8b, 8, 0..32])
 }
 
-/// Returns a reader that decompresses, if the bytes begin like a zstd or a gzip file.
+/// Returns a reader that decompresses the bytes if they begin like a zstd or a gzip file. If `is_required` is set,
+/// other bytes are rejected.
 fn open_packed(mut reader: Box<dyn Read + Send>, is_required: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
