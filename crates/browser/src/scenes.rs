@@ -14,7 +14,8 @@ use fosssim_report::check::{SNIFFED_BYTES, detect_file_kind};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
-/// The length of the longest first record in bytes, except for scenes that are too large to be dropped.
+/// The number of bytes of a trace that are compared with the first records of scenes. Scenes with longer first records
+/// are not recognized.
 const MAX_FIRST_RECORD_BYTES: u64 = 1 << 16;
 
 /// Lists the names of the scenes by assignment and group, in alphabetical order.

@@ -218,7 +218,7 @@ impl Folder {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// Returns the identity of a regular file and its number of hard links, without opening it. Returns `None` for
+    /// Returns the identity of a regular file and the user ID of its owner, without opening it. Returns `None` for
     /// links and for anything else.
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.split_parent(Path::new(name)).ok()?;
@@ -282,7 +282,7 @@ impl AsFd for Folder {
     }
 }
 
-/// Returns the subfolder `name`.
+/// Opens the subfolder `name` of `above`. If it is a link, the error is `ELOOP`.
 fn open_component(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     openat(above, name, OFlags::PATH | OFlags::DIRECTORY | SAFE_FLAGS, Mode::empty()).map_err(|error| {
         let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)

@@ -54,7 +54,7 @@ impl Identity {
     }
 }
 
-/// Opens a file, a folder or a pipe for reading. If it is a pipe, the process that writes is not waited for.
+/// Opens a file, a folder or a pipe for reading. Does not wait for a process that writes into a pipe.
 ///
 /// # Errors
 /// Fails if the entry cannot be opened.
@@ -68,8 +68,8 @@ pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     Ok((file, metadata))
 }
 
-/// Opens a file or a pipe for writing. If a pipe has no reader, that is an error, and the reader is not waited for.
-/// Writing then waits until the pipe has space.
+/// Opens a file or a pipe for writing. Does not wait for a process that reads from a pipe: a pipe without a reader is
+/// an error. Writing then waits until the pipe has space.
 ///
 /// # Errors
 /// Fails if the entry cannot be opened, or if a pipe has no reader.

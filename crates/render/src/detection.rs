@@ -3,8 +3,8 @@ use crate::plot::{PlotTarget, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 
 /// Returns a picture of a call's polynomials on the step, the intervals in which each and all are positive, and the
-/// time of impact. A different mathematically right approach polynomial is not shown, because the decision does not
-/// depend on it.
+/// time of impact. If the mathematically right approach polynomial differs from the logged one, it is not shown,
+/// because the decision does not depend on it.
 pub fn render_picture(study: &Study, title: &str, embedding: PlotTarget) -> String {
     let curves = study.curves.iter().map(|curve| PlottedPolynomial {
         name: curve.role.to_string(),

@@ -14,7 +14,7 @@ use std::collections::VecDeque;
 /// The minimum width of discs and lines, in pixels. Narrower ones would be invisible.
 const MIN_WIDTH: f64 = 1.5;
 
-/// The visible depth of a half-plane's inside.
+/// The opacity of a half-plane's inside.
 const INSIDE_DEPTH: f64 = 0.25;
 
 /// The radius in pixels above which discs are drawn as half-planes, because they look like half-planes in the picture.

@@ -9,10 +9,11 @@ pub mod scenes;
 
 use std::{fmt, fs, io::Write, path::PathBuf};
 
-/// Needs whose absence makes a test fail, separated by commas.
+/// The environment variable that lists the needs whose absence makes a test fail, separated by commas.
 pub const REQUIRE: &str = "FOSSSIM_REQUIRE";
 
-/// The file that contains the list. Without this variable there is one file per run of `cargo test`.
+/// The environment variable that names the file of the list. Without this variable, each run of `cargo test` has its own
+/// file.
 pub const LIST: &str = "FOSSSIM_SKIPS";
 
 /// Something that not every machine has.
@@ -117,7 +118,7 @@ pub fn skip(need: Need, why: impl fmt::Display) {
     drop(file.and_then(|mut file| file.write_all(line.as_bytes())));
 }
 
-/// Checks that a test may be skipped if this is missing.
+/// Returns an error if `FOSSSIM_REQUIRE` forbids that a test is skipped for want of `need`.
 fn check_allowed(need: Need, required: &str) -> Result<(), String> {
     for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
         if word == "all" || word == need.name() {
@@ -131,8 +132,9 @@ fn check_allowed(need: Need, required: &str) -> Result<(), String> {
     Ok(())
 }
 
-/// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
-/// have a list only if the variable is set.
+/// Returns the path of this run's list, or `None` if there is no list. Its name contains the ID of cargo, which is the
+/// parent process of the tests and of the summary. Other runners print no summary, and have a list only if the variable
+/// is set.
 pub fn skip_list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
         return Some(list.into());
@@ -141,7 +143,7 @@ pub fn skip_list() -> Option<PathBuf> {
     of_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
 }
 
-/// Returns a short form of the list, by need: how many tests, and why.
+/// Returns a summary of the list: for each need, the tests that were skipped, and the first reason.
 pub fn summary(list: &str) -> String {
     let mut lines = String::new();
     let mut total = 0;

@@ -82,7 +82,7 @@ fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(accused)))
 }
 
-/// Counts the recognized mistakes, and the traces.
+/// Prints how many mistakes are recognized, and on how many traces.
 fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let best =
         |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|outcome| is(&outcome.0))).count();
@@ -105,7 +105,7 @@ fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     );
 }
 
-/// Counts the explanation that all traces of a mistake give together.
+/// Prints how many mistakes are recognized from all their traces together, and the names of the others.
 fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {

@@ -37,17 +37,18 @@ struct MilestoneTally {
     /// The largest share of a tolerance.
     position: f64,
     velocity: f64,
-    /// The smallest power of two that makes a step's multiplied difference from the reference count as wrong.
+    /// The smallest power of two by which a step's difference from the reference can be multiplied so that the step is
+    /// wrong.
     room: Option<u32>,
     /// The number of traces with each noise, and the number of rejected ones.
     noisy: u64,
     refused: [u64; NOISE_SIZES.len()],
 }
 
-/// The factor by which the differences of a correct program from the reference may grow in every step.
+/// The factor by which a correct program's differences from the reference may grow in every step without becoming wrong.
 const MIN_ROOM: u32 = 32;
 
-/// The place in [`NOISE_SIZES`] from which all noise is rejected.
+/// The index in [`NOISE_SIZES`] from which all noise is rejected.
 const FIRST_REJECTED_NOISE: usize = 4;
 
 #[test]
@@ -189,7 +190,7 @@ impl<'a> SingleSteps<'a> {
 }
 
 fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally) {
-    // Integers are between the numbers of other records.
+    // Other records have integers between their numbers.
     if !matches!(scene.collision.handling().records.impulses, ImpulseList::Absent) {
         return;
     }
@@ -261,7 +262,7 @@ fn springs(masses: [f64; 3]) -> Scene {
     scene::read("scene", text.as_bytes()).expect("a scene").scene
 }
 
-/// Returns the verdict on what a program writes of a scene.
+/// Returns the verdict of the fair rules on the trace that a program writes.
 fn verdict(scene: &Scene, arithmetic: right::Arithmetic) -> FairVerdict {
     let trace = arithmetic.trace(scene, |_, _| ()).unwrap_or_else(|_| panic!("{} ends early", arithmetic.name));
     judge_trace(scene, &trace).fair.expect("the fair rules were asked").verdict
@@ -269,7 +270,8 @@ fn verdict(scene: &Scene, arithmetic: right::Arithmetic) -> FairVerdict {
 
 #[test]
 fn whatever_solves_the_system_of_an_implicit_step_is_right() {
-    // Where masses differ, solvers that are exact beside the largest entry are not so beside each row's.
+    // If masses differ, the error of some solvers is small compared with the largest entry, but not with those of each
+    // row.
     let mut scenes = vec![springs([1e7, 1.0, 4.0]), springs([1e6, 1.0, 1e2])];
     let of_milestone = library::scene_names().filter(|name| library::find_assignment(name) == Some(Assignment::T1M3));
     scenes.extend(

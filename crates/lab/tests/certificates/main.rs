@@ -253,7 +253,7 @@ fn draw_product(random: &mut Random) -> Vec<BoundedValue> {
     coefficients[0] = random.draw_uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
     let mut count = 0;
     while count < degree {
-        // Places within the step are mostly avoided.
+        // Zeros within the step are mostly avoided.
         let place = (random.draw_below(33) as f64 - 16.0) * unit;
         if (0.0..=1.0).contains(&place) && !random.draw_one_in(16) {
             continue;
@@ -345,7 +345,7 @@ fn draw_distant_motion(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// Returns an edge that turns by up to half a turn and stretches a little.
+/// Returns the motion of an edge that turns by up to half a turn and stretches a little.
 fn draw_rotating_motion(random: &mut Random) -> RandomMotion {
     let scale = random.log(-2.0, 3.0);
     let (center, half) = (random.draw_point(scale), random.draw_direction() * (scale * random.draw_uniform(0.1, 1.0)));

@@ -154,7 +154,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws a row of bars for the parts of sets of time in `[0, 1]`. A single time is drawn as a diamond.
+/// Draws a row of bars for the parts of intervals within the step. A single time is drawn as a marker.
 fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
@@ -166,7 +166,7 @@ fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sh
     }
 }
 
-/// Describes the parts of sets of time within the step.
+/// Describes the parts of intervals within the step.
 fn clip_to_step(list: &[Interval]) -> String {
     let parts: Vec<String> = list
         .iter()

@@ -297,7 +297,7 @@ impl Columns {
         at(column)..at(column + 1)
     }
 
-    /// Returns the middle of a step's position, given its index.
+    /// Returns the horizontal position of a step, given its index.
     #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
     pub fn x(&self, place: usize) -> f64 {
         let steps = (self.steps.max(2) - 1) as f64;

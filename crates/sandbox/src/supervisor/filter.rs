@@ -95,7 +95,7 @@ const HARMLESS_REQUESTS: [u64; 8] = [
     libc::FIONBIO,
     libc::FIOCLEX,
     libc::FIONCLEX,
-    0x802c_542a, // TCGETS2, which newer C libraries ask instead
+    0x802c_542a, // TCGETS2, which newer C libraries use instead
 ];
 
 /// Options of `prctl` that name a thread, query something, or restrict the process.

@@ -104,7 +104,8 @@ impl<'a> ForceTerms<'a> {
     fn add_penalty(&mut self, x: &[f64], terms: &mut Vec<(usize, Vec2)>) {
         let Collision::Penalty { stiffness, thickness, detection } = self.scene.collision else { return };
         let (scene, Some(near)) = (self.scene, &mut self.near) else { return };
-        // The force along `n`, from a body to another whose surface is `n` less `radii` away.
+        // The penalty force between two bodies with the vector `n` between their positions and the sum `radii` of their
+        // radii.
         let push = |n: Vec2, radii: f64| {
             let distance = length(n);
             let repels = distance < radii + thickness && !(distance == 0.0 && detection == CollisionDetection::Contest);
