@@ -12,8 +12,8 @@ use std::{fmt, fs, io::Write, path::PathBuf};
 /// The environment variable that lists the needs whose absence makes a test fail, separated by commas.
 pub const REQUIRE: &str = "FOSSSIM_REQUIRE";
 
-/// The environment variable that names the file of the list. Without this variable, each run of `cargo test` has its own
-/// file.
+/// The environment variable that names the file of the list. Without this variable, each run of `cargo test` has its
+/// own file.
 pub const LIST: &str = "FOSSSIM_SKIPS";
 
 /// Something that not every machine has.

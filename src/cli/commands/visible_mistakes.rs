@@ -28,7 +28,7 @@ pub(super) struct VisibleMistakes {
     pub(super) rarely_visible: Vec<&'static str>,
 }
 
-/// The maximum number of scenes that are counted for a mistake. So many scenes show the mistake reliably.
+/// The maximum number of scenes that are counted for a mistake. That number of scenes shows the mistake reliably.
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
 /// Returns for each area of the assignment which of its mistakes the plan's scenes show. The areas are in the order of

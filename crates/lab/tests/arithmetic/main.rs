@@ -45,7 +45,8 @@ struct MilestoneTally {
     refused: [u64; NOISE_SIZES.len()],
 }
 
-/// The factor by which a correct program's differences from the reference may grow in every step without becoming wrong.
+/// The factor by which a correct program's differences from the reference may grow in every step without becoming
+/// wrong.
 const MIN_ROOM: u32 = 32;
 
 /// The index in [`NOISE_SIZES`] from which all noise is rejected.

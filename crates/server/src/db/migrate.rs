@@ -133,8 +133,8 @@ pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
 mod tests {
     use super::*;
 
-    /// A database to which one of these changes was applied rejects a program in which the change's text differs, even in
-    /// a comment.
+    /// A database to which one of these changes was applied rejects a program in which the change's text differs, even
+    /// in a comment.
     #[test]
     fn changes_that_databases_have_stay_as_they_are() {
         let known = MIGRATIONS[..29].iter().fold(Sha256::new(), |known, (_, script)| known.chain_update(script));

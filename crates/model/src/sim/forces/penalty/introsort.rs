@@ -74,7 +74,7 @@ fn heapsort<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool + Copy) {
     }
 }
 
-/// Moves a hole to the bottom of a heap, and an entry up from there.
+/// Moves a hole from index `top` to the bottom of a heap. Then moves `value` up from there to its place.
 fn sift<T: Copy>(heap: &mut [T], top: usize, value: T, is_less: impl Fn(&T, &T) -> bool) {
     let mut hole = top;
     while 2 * hole + 2 < heap.len() {
