@@ -61,8 +61,8 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let (State { positions: x, velocities: v }, h) = (State::for_scene(scene), scene.time_step);
     let is_implicit = scene.integrator.is_implicit();
     let at_which = if is_implicit { "x + h v" } else { "x" };
-    let place: Vec<f64> = x.iter().zip(&v).map(|(x, v)| if is_implicit { x + h * v } else { *x }).collect();
-    let all = gradients(scene, &place, &v);
+    let force_positions: Vec<f64> = x.iter().zip(&v).map(|(x, v)| if is_implicit { x + h * v } else { *x }).collect();
+    let all = gradients(scene, &force_positions, &v);
     let has_any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
     if has_handling && !all.iter().any(|gradient| has_any(gradient)) {
         return None;
@@ -88,7 +88,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     text += &if parts.is_empty() { "  none\n".to_owned() } else { render_table(["", "particle", "gradient"], rows) };
     let formulas: BTreeSet<&str> = scene.forces.iter().map(force_formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
-    text.extend(render_penalty(scene, &place));
+    text.extend(render_penalty(scene, &force_positions));
     let words = match scene.integrator {
         Integrator::ExplicitEuler => "x becomes x + h v, v becomes v + h a",
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",

@@ -119,7 +119,7 @@ pub(super) fn forbid_new_privileges() -> io::Result<()> {
 
 /// Sets both the soft and the hard limit. They never exceed the hard limit that exists.
 pub(super) fn set_limit(resource: Resource, value: u64) -> io::Result<()> {
-    let value = Some(getrlimit(resource).maximum.map_or(value, |most| value.min(most)));
+    let value = Some(getrlimit(resource).maximum.map_or(value, |maximum| value.min(maximum)));
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
 

@@ -85,7 +85,8 @@ pub enum PolynomialDetail {
         /// The key of the change in the assignment's data.
         key: Cow<'static, str>,
         /// Whether all affected pairs consist of a particle and an edge. Their radii have names of their own.
-        of_edges: bool,
+        #[serde(rename = "of_edges")]
+        has_only_edge_pairs: bool,
     },
     /// Another quantity is used instead of a letter of the formula.
     StandsFor {

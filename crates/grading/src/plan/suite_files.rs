@@ -24,8 +24,8 @@ pub struct FindError {
 }
 
 impl From<String> for FindError {
-    fn from(words: String) -> Self {
-        Self { message: words, cause: None }
+    fn from(message: String) -> Self {
+        Self { message, cause: None }
     }
 }
 
@@ -48,13 +48,13 @@ pub fn find_suite(name: &str) -> Result<Plan, FindError> {
     let loaded = match find_built_in_suite(name) {
         Some(text) => load_suite(text, Path::new(".")),
         None => {
-            let text = read_text(path, MAX_SUITE_BYTES).map_err(|why| match why.kind() {
+            let text = read_text(path, MAX_SUITE_BYTES).map_err(|error| match error.kind() {
                 io::ErrorKind::NotFound => {
                     let suite_names = built_in_names().collect::<Vec<_>>().join(", ");
                     format!("there is no suite {name}: it is neither a file nor one of {suite_names}{}", suggest(name))
                         .into()
                 }
-                _ => FindError { message: format!("cannot read the suite {name}"), cause: Some(why) },
+                _ => FindError { message: format!("cannot read the suite {name}"), cause: Some(error) },
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
                 let advice = "a group of a suite lists it in its `scenes`";

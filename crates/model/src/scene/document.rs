@@ -135,8 +135,8 @@ impl<'t> DocumentReader<'t, '_> {
         let declares = self.text[span.clone()].contains('[');
         if declares {
             self.report.add_error(|| {
-                Problem::new(span, "a document type with declarations, which the original ignores")
-                    .with_help("remove it and write its declarations out")
+                Problem::new(span, "the document type contains declarations, and the original ignores them")
+                    .with_help("replace the entities by their text, and remove the document type")
             });
         }
     }

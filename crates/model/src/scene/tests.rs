@@ -463,7 +463,8 @@ fn text_and_other_markup() {
     );
     assert_eq!(
         judged(&format!("<!DOCTYPE scene [<!ENTITY a 'b'>]><scene>{START}{TWO}</scene>")),
-        "1:1: a document type with declarations, which the original ignores (remove it and write its declarations out)"
+        "1:1: the document type contains declarations, and the original ignores them (replace the entities by their \
+         text, and remove the document type)"
     );
     says("<!foo>", "4:1: `<!` does not start a known construct (`<!-- ... -->`)");
     assert_eq!(judged(&format!("\u{feff}<scene>{START}{TWO}</scene>")), "fine");

@@ -1,5 +1,5 @@
 //! The report about one step of a trace.
 
-mod show;
+mod shown_step;
 
-pub use show::{ShownRecord, ShownStep};
+pub use shown_step::{ShownRecord, ShownStep};

@@ -7,18 +7,18 @@ const MAX_NAMED_FEATURES: usize = 2;
 /// Describes what the failing scenes have in common, with counts, and how the program ended in the first of them.
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure {
-        failure: failing,
-        features: contents,
+        failure,
+        features,
         failed_scenes: failed,
         scenes_with_features: with,
         scenes_without_features: without,
         first_scene: first,
         step,
     } = found;
-    let Some((place, others)) = contents.split_first() else { return String::new() };
-    let scenes = format!("{with} scenes {}", describe_place(place));
+    let Some((first_feature, others)) = features.split_first() else { return String::new() };
+    let scenes = format!("{with} scenes {}", describe_feature(first_feature));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
-    let verb = failing.name();
+    let verb = failure.name();
     let record = match step {
         0 => "is the first one".to_owned(),
         step => format!("belongs to step {step}"),
@@ -28,7 +28,7 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     );
     if !others.is_empty() {
         let (shown, more) = others.split_at(others.len().min(MAX_NAMED_FEATURES));
-        let shown: Vec<String> = shown.iter().map(describe_place).collect();
+        let shown: Vec<String> = shown.iter().map(describe_feature).collect();
         let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
         text += &format!(" Equally likely: those {}{more}.", shown.join("; those "));
     }
@@ -37,8 +37,8 @@ pub fn describe_located(found: &LocatedFailure) -> String {
 
 /// Describes a feature of a scene as a relative clause, such as `in which the failsafe moves a zone (held by: a
 /// half-plane)`.
-fn describe_place(content: &SceneFeature) -> String {
-    let SceneFeature { family, value } = content;
+fn describe_feature(feature: &SceneFeature) -> String {
+    let SceneFeature { family, value } = feature;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));
     let is_step = family.ends_with(" step");
     format!("{} {family}{}", if is_step { "with" } else { "in which" }, value.unwrap_or_default())
@@ -51,15 +51,15 @@ mod tests {
 
     #[test]
     fn counts_and_ties_are_reported() {
-        let content = |family: &'static str, value: Option<[&'static str; 2]>| SceneFeature {
+        let feature = |family: &'static str, value: Option<[&'static str; 2]>| SceneFeature {
             family: family.into(),
             value: value.map(|words| words.map(Into::into)),
         };
         let found = LocatedFailure {
             failure: FailureKind::Crash,
             features: vec![
-                content("the failsafe moves a zone", None),
-                content("a hybrid step", Some(["zones", "one"])),
+                feature("the failsafe moves a zone", None),
+                feature("a hybrid step", Some(["zones", "one"])),
             ],
             failed_scenes: 24,
             scenes_with_features: 24,
@@ -75,7 +75,7 @@ mod tests {
         );
         let some = LocatedFailure {
             failure: FailureKind::Several,
-            features: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
+            features: vec![feature("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed_scenes: 7,
             scenes_with_features: 9,
             step: 0,

@@ -204,8 +204,8 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
 
 /// Returns one detail of the exact form of a guess about `subjects`.
 fn guess_detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
-    if let PolynomialDetail::Named { of_edges, .. } = &mut detail {
-        *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
+    if let PolynomialDetail::Named { has_only_edge_pairs, .. } = &mut detail {
+        *has_only_edge_pairs = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
     }
     Detail::Polynomial(detail)
 }
@@ -233,7 +233,7 @@ fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
         let (reproduced, scaled) = study.count_predicted(predict)?;
         Some(Candidate {
             guess: Guess::Named(named.key.into()),
-            details: vec![PolynomialDetail::Named { key: named.key.into(), of_edges: false }],
+            details: vec![PolynomialDetail::Named { key: named.key.into(), has_only_edge_pairs: false }],
             forms: Vec::new(),
             cost: named.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,

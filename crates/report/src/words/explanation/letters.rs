@@ -51,8 +51,8 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
 }
 
 /// Returns a line in which two radii have the names that fit the kind of pair: the radius of an edge is `re`.
-pub(super) fn name_radii(line: &str, of_edges: bool) -> String {
-    if of_edges { line.replace("r2", "re") } else { line.to_owned() }
+pub(super) fn name_radii(line: &str, has_only_edge_pairs: bool) -> String {
+    if has_only_edge_pairs { line.replace("r2", "re") } else { line.to_owned() }
 }
 
 /// Splits a line into words of letters and digits.

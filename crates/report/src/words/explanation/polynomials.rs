@@ -74,8 +74,8 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
             let name = if *kind == PairKind::ParticleHalfPlane { "the radius" } else { "the sum of the radii" };
             format!("{name} is {used} instead of {}", format_short(*expected))
         }
-        PolynomialDetail::Named { key, of_edges } => {
-            letters::name_radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
+        PolynomialDetail::Named { key, has_only_edge_pairs } => {
+            letters::name_radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *has_only_edge_pairs)
         }
         PolynomialDetail::StandsFor { reading, letter, stand } => describe_substitute(*reading, letter, stand),
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("the {} is 0", PowerText(*power)),

@@ -9,12 +9,12 @@ use fosssim_model::sim::PairKind;
 
 /// Describes the fault of a stage. The sentence begins with the place of the fault.
 pub(super) fn describe(fault: &StageFault) -> String {
-    format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
+    format!("{}: {}.", name_areas(fault), capitalize(&describe_fault(fault)))
 }
 
 /// Names the parts of the assignment that may contain the fault. If the fault concerns only one kind of pair, the kind
 /// is named.
-fn describe_place(fault: &StageFault) -> String {
+fn name_areas(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),

@@ -96,7 +96,8 @@ actions! { NO_CONTENT:
     /// Removes a course with its assignments, submissions and log. Accounts are kept. This cannot be undone.
     delete "/api/v1/courses/{course}" "administration"
         remove_course(admin: Admin, { course }, ?query: RemovalConfirmation) -> "Removed": async {
-            let other = Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm");
+            let other =
+                Problem::conflict("the parameter `confirm` must be the course's name", "add `confirm=NAME` to the URL");
             ensure(query.confirm == course, other)?;
             admin.remove_course(&course).await
         };

@@ -328,7 +328,7 @@ fn wrong_radii_are_named() {
         ("diameters", |r1, r2| 4.0 * (r1 + r2) * (r1 + r2)),
     ];
     for (key, square) in squares {
-        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Named { key: key.into(), of_edges: true }), |motion| {
+        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Named { key: key.into(), has_only_edge_pairs: true }), |motion| {
             let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
             let mut lists = edge_lists(motion);
             lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
@@ -337,7 +337,7 @@ fn wrong_radii_are_named() {
         only(
             PairKind::ParticleParticle,
             key,
-            is(PolynomialDetail::Named { key: key.into(), of_edges: false }),
+            is(PolynomialDetail::Named { key: key.into(), has_only_edge_pairs: false }),
             |motion| {
                 let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
                 let mut lists = particle_lists(motion);
@@ -480,7 +480,7 @@ fn small_slips_in_quadratics_are_named() {
         PairMotion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
         _ => panic!("no half-plane"),
     };
-    let exchange = |key: &'static str| is(PolynomialDetail::Named { key: key.into(), of_edges: false });
+    let exchange = |key: &'static str| is(PolynomialDetail::Named { key: key.into(), has_only_edge_pairs: false });
     half_plane("no-normal-square", &exchange("no-normal-square"), &|motion, lists| {
         let (n, r) = n_square(motion);
         lists[0][2] += r - r * n;
@@ -502,7 +502,7 @@ fn small_slips_in_quadratics_are_named() {
     only(
         PairKind::ParticleEdge,
         "one-unscaled",
-        is(PolynomialDetail::Named { key: "one-unscaled".into(), of_edges: true }),
+        is(PolynomialDetail::Named { key: "one-unscaled".into(), has_only_edge_pairs: true }),
         |motion| {
             let mut lists = edge_lists(motion);
             lists[2] = lists[1].iter().map(|value| -value).collect();
