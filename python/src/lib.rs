@@ -26,8 +26,8 @@ impl PageHost for Memory<'_> {
 /// Returns doubles as bytes.
 fn pack_numbers<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
     PyBytes::new_with(py, 8 * numbers.len(), |into| {
-        for (place, number) in into.chunks_exact_mut(8).zip(numbers) {
-            place.copy_from_slice(&number.to_ne_bytes());
+        for (bytes, number) in into.chunks_exact_mut(8).zip(numbers) {
+            bytes.copy_from_slice(&number.to_ne_bytes());
         }
         Ok(())
     })

@@ -26,19 +26,19 @@ pub fn pinned_mistake() -> Option<&'static str> {
 
 /// Returns a reserved place that contains no mistake.
 const fn empty_slot() -> PinSlot {
-    let mut place = [0; SLOT_BYTES];
+    let mut slot = [0; SLOT_BYTES];
     let mut index = 0;
     while index < MARK_BACKWARDS.len() {
-        place[index] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - index];
+        slot[index] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - index];
         index += 1;
     }
-    place
+    slot
 }
 
 /// Reads the mistake in a reserved place, if it contains one.
-fn read(place: &PinSlot) -> Option<&str> {
+fn read(slot: &PinSlot) -> Option<&str> {
     // The compiler must not assume the content of the place, because it is overwritten later.
-    let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
+    let id = &std::hint::black_box(slot)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
 }

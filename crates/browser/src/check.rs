@@ -54,11 +54,11 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let outcome = &examination.outcome;
     // Judging is reported as complete here. The search for the mistake follows, and may take as long.
     host.progress(scene.step_count(), scene.step_count());
-    if let Some(why) = describe_no_verdict(outcome, &request.scene) {
-        return Err(why);
+    if let Some(message) = describe_no_verdict(outcome, &request.scene) {
+        return Err(message);
     }
-    if let Some(why) = fault.get() {
-        return Err(describe_unread(outcome, &request.trace, why));
+    if let Some(error) = fault.get() {
+        return Err(describe_unread(outcome, &request.trace, error));
     }
     let explanations = if needs_explanation(outcome) { examination.explain() } else { Vec::new() };
     let check = Check {

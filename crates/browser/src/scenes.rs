@@ -52,8 +52,8 @@ pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // If there is an error, its message is in `fault`.
     let _ = open(host, file, &fault).take(MAX_FIRST_RECORD_BYTES).read_to_end(&mut start);
-    if let Some(why) = fault.get() {
-        return Err(format!("cannot read the trace: {why}"));
+    if let Some(error) = fault.get() {
+        return Err(format!("cannot read the trace: {error}"));
     }
     let begins = |name: &&str| library::find_scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
     let scenes: Vec<_> = library::scene_names().filter(begins).collect();

@@ -85,8 +85,8 @@ impl UploadedSubmission {
         };
         let mut progress = PageProgress { host, all: task.scene.step_count() };
         let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut progress);
-        if let Some(why) = fault.get() {
-            return Err(format!("cannot read the trace of {}: {why}", task.name));
+        if let Some(error) = fault.get() {
+            return Err(format!("cannot read the trace of {}: {error}", task.name));
         }
         if self.is_for_students {
             limit_result(self.plan.student_hints(&task.name), &mut result);
@@ -109,12 +109,15 @@ impl UploadedSubmission {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
-        let points =
-            |points, most| json!({ "points": grade::format_optional_points(points), "of": grade::format_points(most) });
+        let points = |points, max_points| {
+            let (points, max_points) = (grade::format_optional_points(points), grade::format_points(max_points));
+            json!({ "points": points, "of": max_points })
+        };
         let scene_view = |scene: &SceneGrade| -> Value {
-            let (points, most) = (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
+            let (points, max_points) =
+                (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
             let likely = scene.corrected_explanations.first().map(|mistake| grade::describe_in_scene(scene, mistake));
-            json!({ "points": points, "of": most, "likely": likely })
+            json!({ "points": points, "of": max_points, "likely": likely })
         };
         let scenes: Vec<Value> = graded.scenes().map(scene_view).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();

@@ -157,8 +157,10 @@ pub fn gather(
 
 /// Returns the calls of a step that are shown in detail.
 fn find_wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
-    let of_step = focus.iter().filter(|focus| focus.step == step);
-    of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::InPass), focus.pair?))).collect()
+    let step_focus = focus.iter().filter(|focus| focus.step == step);
+    step_focus
+        .filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::InPass), focus.pair?)))
+        .collect()
 }
 
 /// The evidence so far, with the reference's own run and its steps from the trace's states.
@@ -274,11 +276,12 @@ impl<'a> EvidenceBuilder<'a> {
 /// Returns the steps shown in detail: those of findings, and those around the first wrong step; if there are too many,
 /// the most important ones.
 fn find_detailed_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
-    let (steps, most) = (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
+    let (steps, max_steps) =
+        (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near_steps = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
     for step in near_steps.chain(focus.iter().map(|focus| focus.step)) {
-        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < most {
+        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < max_steps {
             chosen.push(step);
         }
     }

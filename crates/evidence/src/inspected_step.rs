@@ -201,26 +201,26 @@ impl<'a> Inspector<'a> {
     fn assign(&mut self, log: &PolynomialLog) {
         let Some(found) = match_polynomials(&self.right_polynomials, log) else { return };
         let mut is_claimed = vec![false; log.len()];
-        found.iter().flatten().for_each(|&place| is_claimed[place] = true);
+        found.iter().flatten().for_each(|&index| is_claimed[index] = true);
         for pass in &mut self.step.passes {
             pass.differing_pairs.clear();
             pass.is_logged = true;
         }
         let mut fates: Vec<CallLog> = Vec::with_capacity(self.reference_calls.len());
         for call in &self.reference_calls {
-            let of_call = &found[call.first..call.first + call.count];
-            let fate = if of_call.iter().all(Option::is_none) {
+            let indices = &found[call.first..call.first + call.count];
+            let fate = if indices.iter().all(Option::is_none) {
                 CallLog::Nothing
             } else {
                 CallLog::Polynomials(
-                    of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
+                    indices.iter().map(|index| index.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
                 )
             };
             if let Some(pass) = self.step.passes.get_mut(call.number) {
                 let is_wrong = |list: &[Vec<f64>]| {
                     list.iter()
                         .zip(call.first..)
-                        .any(|(own, place)| own.is_empty() || are_different(own, self.right_polynomials.get(place)))
+                        .any(|(own, index)| own.is_empty() || are_different(own, self.right_polynomials.get(index)))
                 };
                 match &fate {
                     _ if call.count == 0 => {}
@@ -238,22 +238,22 @@ impl<'a> Inspector<'a> {
         self.step.surplus_polynomials = Some(surplus);
         // A polynomial without a call may belong to a call that was made twice. It then follows or precedes the
         // polynomials of its pass.
-        let mut place = 0;
-        while place < log.len() && surplus > 0 {
-            if is_claimed[place] {
-                place += 1;
+        let mut index = 0;
+        while index < log.len() && surplus > 0 {
+            if is_claimed[index] {
+                index += 1;
                 continue;
             }
             let again = |call: &&ReferenceCall| {
                 call.count > 0
-                    && place + call.count <= log.len()
+                    && index + call.count <= log.len()
                     && (0..call.count).all(|k| {
-                        !is_claimed[place + k]
-                            && !are_different(log.get(place + k), self.right_polynomials.get(call.first + k))
+                        !is_claimed[index + k]
+                            && !are_different(log.get(index + k), self.right_polynomials.get(call.first + k))
                     })
             };
             let before =
-                found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < place)).map(|(own, _)| own).max();
+                found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < index)).map(|(own, _)| own).max();
             let number = before.and_then(|own| self.reference_calls.iter().find(|call| call.first + call.count > own));
             let number = number.map_or(0, |call| call.number);
             match self.reference_calls.iter().filter(|call| call.number == number).find(again) {
@@ -261,10 +261,10 @@ impl<'a> Inspector<'a> {
                     if let Some(pass) = self.step.passes.get_mut(number) {
                         keep_pair(&mut pass.repeated_pairs, call.pair);
                     }
-                    place += call.count;
+                    index += call.count;
                     surplus -= call.count;
                 }
-                None => (place, surplus) = (place + 1, surplus - 1),
+                None => (index, surplus) = (index + 1, surplus - 1),
             }
         }
     }
@@ -311,7 +311,7 @@ impl<'a> Inspector<'a> {
 fn find_log_by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
     match log {
         Some(log) if log.len() == expected => {
-            CallLog::Polynomials((first..first + count).map(|place| log.get(place).to_vec()).collect())
+            CallLog::Polynomials((first..first + count).map(|index| log.get(index).to_vec()).collect())
         }
         _ => CallLog::Unknown,
     }
@@ -366,8 +366,8 @@ impl Observer for Inspector<'_> {
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
         let motion = || PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let is_hit = matches!(decision, Decision::Hit { .. });
-        let is_wanted = self.wanted_calls.iter().any(|(wanted, of_pair)| {
-            *of_pair == pair
+        let is_wanted = self.wanted_calls.iter().any(|(wanted, wanted_pair)| {
+            *wanted_pair == pair
                 && match wanted {
                     WantedCalls::Hits => is_hit,
                     WantedCalls::InPass(wanted_pass) => *wanted_pass == pass,

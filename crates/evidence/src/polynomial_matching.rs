@@ -23,9 +23,9 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
     let is_match = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
     let shorter = rows.min(columns);
-    let head = (0..shorter).take_while(|&place| is_match(place, place)).count();
+    let head = (0..shorter).take_while(|&index| is_match(index, index)).count();
     let tail = (0..shorter - head).take_while(|&back| is_match(rows - 1 - back, columns - 1 - back)).count();
-    let mut found: Vec<Option<usize>> = (0..rows).map(|place| (place < head).then_some(place)).collect();
+    let mut found: Vec<Option<usize>> = (0..rows).map(|index| (index < head).then_some(index)).collect();
     for back in 0..tail {
         found[rows - 1 - back] = Some(columns - 1 - back);
     }
@@ -64,26 +64,26 @@ const MATCH: u8 = 0;
 const DELETE: u8 = 1;
 const INSERT: u8 = 2;
 
-fn place_cost(places: usize) -> u32 {
-    u32::try_from(places).unwrap_or(u32::MAX / GAP_COST)
+fn place_cost(distance: usize) -> u32 {
+    u32::try_from(distance).unwrap_or(u32::MAX / GAP_COST)
 }
 
 /// Returns whether one polynomial visibly differs from every positive multiple of the other.
 pub(crate) fn are_different(own: &[f64], right: &[f64]) -> bool {
-    let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-    let (most, scale) = (largest(own), largest(right));
-    if scale == 0.0 || most == 0.0 || !most.is_finite() {
-        return own.len() != right.len() && (most != 0.0 || scale != 0.0);
+    let largest = |list: &[f64]| list.iter().fold(0.0_f64, |maximum, c| maximum.max(c.abs()));
+    let (maximum, scale) = (largest(own), largest(right));
+    if scale == 0.0 || maximum == 0.0 || !maximum.is_finite() {
+        return own.len() != right.len() && (maximum != 0.0 || scale != 0.0);
     }
     // The course's library may have dropped small leading coefficients of only one polynomial.
     let (excess, own) = own.split_at(own.len().saturating_sub(right.len()));
     let (missing, right) = right.split_at(right.len() - own.len());
     let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED_DEVIATION * size);
-    if !(small(excess, most) && small(missing, scale)) {
+    if !(small(excess, maximum) && small(missing, scale)) {
         return true;
     }
-    let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
-    let factor = own[place] / right[place];
+    let power = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
+    let factor = own[power] / right[power];
     let is_near =
         |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED_DEVIATION * (factor * scale).abs();
     !(factor > 0.0 && own.iter().zip(right).all(is_near))

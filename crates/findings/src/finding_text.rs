@@ -166,9 +166,9 @@ impl Display for VectorDifference {
         // The distance has two digits, and each vector has at least six.
         let short = |vector: [f64; 2]| {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
-            let least = power(size).map(|power| 5 - power);
-            let places = power(distance).map(|power| 1 - power).max(least).unwrap_or(0);
-            VectorText(vector.map(|value| truncate_to_places(value, places, power(value))))
+            let minimum = power(size).map(|power| 5 - power);
+            let decimals = power(distance).map(|power| 1 - power).max(minimum).unwrap_or(0);
+            VectorText(vector.map(|value| truncate_to_places(value, decimals, power(value))))
         };
         write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
@@ -177,12 +177,12 @@ impl Display for VectorDifference {
 }
 
 /// Returns a value rounded to a number of decimal places. A negative number means places before the decimal point.
-fn truncate_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
+fn truncate_to_places(value: f64, decimals: i32, power: Option<i32>) -> f64 {
     // Seventeen digits identify a double, so more are not needed.
-    let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
-    let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
-        (Ok(digits), _) if places > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
-        (_, Ok(places)) => format!("{value:.places$}"),
+    let digits = power.map_or(0, |power| (power + decimals).clamp(0, 16));
+    let text = match (usize::try_from(digits), usize::try_from(decimals.max(0))) {
+        (Ok(digits), _) if decimals > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
+        (_, Ok(decimals)) => format!("{value:.decimals$}"),
         _ => value.to_string(),
     };
     text.parse().unwrap_or(value)

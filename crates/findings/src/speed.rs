@@ -121,12 +121,12 @@ fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
     };
     let rounds = scenes.iter().map(|runs| runs.len()).min().unwrap_or(0);
     let each: Vec<f64> = (0..rounds).map(|round| sum(&|runs: &[TimedRun]| runs[round])).collect();
-    let least = |runs: &[TimedRun]| TimedRun {
+    let fastest = |runs: &[TimedRun]| TimedRun {
         submission: runs.iter().map(|run| run.submission).min().unwrap_or_default(),
         reference: runs.iter().map(|run| run.reference).min().unwrap_or_default(),
     };
     SpeedRatio {
-        ratio: sum(&least),
+        ratio: sum(&fastest),
         least: each.iter().copied().fold(f64::INFINITY, f64::min),
         most: each.iter().copied().fold(0.0, f64::max),
         runs: u32::try_from(rounds).unwrap_or(u32::MAX),

@@ -124,14 +124,14 @@ impl SearchDepth {
 /// which the program ended is the worse fault.
 pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
     let JudgedRun { program, outcome: judged, rules, hints, .. } = *run;
-    let of_program = program_verdict(&program.ended, judged);
-    let (of_trace, trace_says) = trace_verdict(run);
+    let program_result = program_verdict(&program.ended, judged);
+    let (trace_result, trace_reason) = trace_verdict(run);
     // If a program was stopped, its trace is incomplete. Reporting both would count the same fault twice.
-    let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
-    let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
-    let (verdict, reason) = match blames_program || of_program > of_trace {
-        true => (of_program, Reason::Program(find_progress(&program.ended, judged, run.limits))),
-        false => (of_trace, trace_says),
+    let trace_is_cut = matches!(trace_result, Verdict::BadTrace | Verdict::NoOutput);
+    let blames_program = program_result > Verdict::Accepted && (trace_is_cut || program_result >= trace_result);
+    let (verdict, reason) = match blames_program || program_result > trace_result {
+        true => (program_result, Reason::Program(find_progress(&program.ended, judged, run.limits))),
+        false => (trace_result, trace_reason),
     };
     let differs = fair::find_cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();

@@ -160,8 +160,8 @@ impl Runner<'_> {
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
-        if let Some(place) = self.trace_location.filter(|_| !result.verdict.is_accepted()) {
-            place.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
+        if let Some(location) = self.trace_location.filter(|_| !result.verdict.is_accepted()) {
+            location.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
         }
         watch.end_part(RunPart::Drawing);
         Ok(result)

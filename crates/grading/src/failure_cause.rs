@@ -60,13 +60,13 @@ impl FeatureIndex {
     /// Returns the rank of a feature, by which features are sorted. Whole kinds of events come before single values.
     /// Among both, zones come first, then contacts, then whole steps. Pairs that do not collide come last.
     const fn rank(self) -> (bool, usize) {
-        let place = match self.family {
+        let rank = match self.family {
             4 => 0,
             0..=2 => 1,
             5 | 6 => 2,
             _ => 3,
         };
-        (self.value.is_some(), place)
+        (self.value.is_some(), rank)
     }
 }
 
@@ -92,8 +92,8 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         .map(|feature| all_scenes.iter().map(|tried| tried.features.contains(feature)).collect())
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let by_chance = chance_probability(failed.len(), with, all_scenes.len()) * looked_at.len() as f64;
-    if by_chance >= MAX_CHANCE_PROBABILITY || 2 * failed.len() < with {
+    let chance = chance_probability(failed.len(), with, all_scenes.len()) * looked_at.len() as f64;
+    if chance >= MAX_CHANCE_PROBABILITY || 2 * failed.len() < with {
         return None;
     }
     features.sort_by_key(|feature| feature.rank());

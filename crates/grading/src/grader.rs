@@ -344,9 +344,9 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneEvent)) -> FinishedScene<'a> {
-        let without_run = |verdict, why| FinishedScene::without_claim(scene.without_run(verdict, why));
-        if let Some(why) = self.skip_reason(number) {
-            return FinishedScene::without_claim(skipped_scenes::skipped_result(scene, why));
+        let without_run = |verdict, reason| FinishedScene::without_claim(scene.without_run(verdict, reason));
+        if let Some(reason) = self.skip_reason(number) {
+            return FinishedScene::without_claim(skipped_scenes::skipped_result(scene, reason));
         }
         tell(SceneEvent::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
@@ -361,8 +361,8 @@ impl<'a> SubmissionGrading<'a> {
         };
         match &*self.staged_program() {
             Err(message) => FinishedScene::without_claim(scene.failure_result(Failure::Machine(message.clone()))),
-            Ok(StagedProgram { unusable_reason: Some(why), .. }) => {
-                without_run(Verdict::Unusable, Reason::Unusable(why.clone()))
+            Ok(StagedProgram { unusable_reason: Some(reason), .. }) => {
+                without_run(Verdict::Unusable, Reason::Unusable(reason.clone()))
             }
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
                 match shared.cancellation.is_cancelled() {
@@ -423,7 +423,7 @@ impl<'a> SubmissionGrading<'a> {
 
     /// Returns the reason why a scene is skipped; `None` if it is run.
     fn skip_reason(&self, scene: usize) -> Option<NotRunReason> {
-        lock(&self.progress).skip_start.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
+        lock(&self.progress).skip_start.filter(|&(end, _)| scene >= end).map(|(_, reason)| reason)
     }
 
     /// Records a result, and decides whether further scenes are skipped because of it.

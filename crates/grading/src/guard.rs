@@ -44,8 +44,8 @@ fn install_hook() {
             if !IS_GUARDED.get() {
                 return others(panic);
             }
-            let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
-            LAST_PANIC.set(Some(panic_message(panic.payload()) + &place.unwrap_or_default()));
+            let location = panic.location().map(|location| format!(" at {}:{}", location.file(), location.line()));
+            LAST_PANIC.set(Some(panic_message(panic.payload()) + &location.unwrap_or_default()));
         }));
     });
 }

@@ -45,7 +45,7 @@ impl Recipe<'_> {
     /// # Errors
     /// Fails if the machine cannot read the file, or cannot write the copy.
     pub fn stage_file(&self, path: &Path) -> Result<StagedProgram, String> {
-        let why = match collect::open_file(path, true) {
+        let reason = match collect::open_file(path, true) {
             Ok((file, _)) => return self.stage_opened(file, path),
             Err(CollectError::NotRegular { what: "a folder", .. }) => {
                 UnusableReason::CouldNotStart(StartProblem::IsFolder)
@@ -53,12 +53,12 @@ impl Recipe<'_> {
             Err(CollectError::NotRegular { .. }) => UnusableReason::CouldNotStart(StartProblem::NotAFile),
             Err(CollectError::Missing { .. }) => UnusableReason::CouldNotStart(StartProblem::NotFound),
             Err(CollectError::System { source, .. }) => match classify_error(path, source) {
-                CopyError::Submission(why) => UnusableReason::Unreadable(why),
-                CopyError::Grader(why) => return Err(why),
+                CopyError::Submission(reason) => UnusableReason::Unreadable(reason),
+                CopyError::Grader(reason) => return Err(reason),
             },
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::from_unusable(path, why))
+        Ok(StagedProgram::from_unusable(path, reason))
     }
 
     /// Copies the program from the file called `name` in a folder whose contents are not trusted, as
@@ -74,7 +74,7 @@ impl Recipe<'_> {
         noted: Option<&ProgramFile>,
     ) -> Result<StagedProgram, String> {
         let path = folder.join(name);
-        let why = match open_in_folder(folder, name) {
+        let reason = match open_in_folder(folder, name) {
             Ok(file) if belongs_to_another(&file, noted).map_err(describe_error_at(&path))? => {
                 UnusableReason::Unreadable(FILE_OF_ANOTHER.to_owned())
             }
@@ -90,7 +90,7 @@ impl Recipe<'_> {
             }
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::from_unusable(&path, why))
+        Ok(StagedProgram::from_unusable(&path, reason))
     }
 
     /// Builds the sources in a folder, or in the only archive in it, and copies the resulting program.

@@ -52,12 +52,12 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
 /// are still missing in it. Speed counts if `is_timed` is true.
 pub(super) fn build_grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = mark_unwritten(results).into_iter();
-    let of_group = |planned: &PlannedGroup| {
+    let to_grade = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
         let results = results.by_ref().take(planned.scenes.len()).collect();
         GroupGrade { note: planned.note.clone(), ..grade_group(&planned.name, marking, results) }
     };
-    let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
+    let groups: Vec<GroupGrade> = plan.groups.iter().map(to_grade).collect();
     let (verdict, points, max_points) = Grade::totals(&groups);
     Grade {
         submission,

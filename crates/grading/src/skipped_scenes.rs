@@ -14,13 +14,13 @@ use std::time::Duration;
 
 /// Returns the result of a skipped scene. If limits were exceeded, the scene counts like the scenes that exceeded them,
 /// because the submission is at fault.
-pub(super) fn skipped_result(task: &SceneTask, why: NotRunReason) -> SceneResult {
-    let verdict = match why {
+pub(super) fn skipped_result(task: &SceneTask, reason: NotRunReason) -> SceneResult {
+    let verdict = match reason {
         NotRunReason::Limits { verdict, .. } => verdict,
         NotRunReason::Total(_) => Verdict::TimeLimit,
         NotRunReason::FailFast => Verdict::NotRun,
     };
-    SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::Skipped(why))
+    SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::Skipped(reason))
 }
 
 /// The factor between the limit on all scenes that exceed a limit and the limit on consecutive ones. Each such scene

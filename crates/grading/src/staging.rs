@@ -131,8 +131,8 @@ impl StagedProgram {
         Self { program: path.to_owned(), digest, build: None, unusable_reason: None, identity: None, _folder: None }
     }
 
-    pub(super) fn from_unusable(path: &Path, why: UnusableReason) -> Self {
-        Self { unusable_reason: Some(why), ..Self::without_program(path) }
+    pub(super) fn from_unusable(path: &Path, reason: UnusableReason) -> Self {
+        Self { unusable_reason: Some(reason), ..Self::without_program(path) }
     }
 
     /// Returns the digest of the program's bytes; `None` if there is no program that can be run.
@@ -148,7 +148,7 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
     // A modified copy of the grader with this name would also write correct traces, so the name is checked as well.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
-    let why = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
+    let reason = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
         Ok(staged) => {
             let is_own =
                 is_own_file(&staged.program, (metadata.dev(), metadata.ino())).map_err(describe_error_at(path))?;
@@ -158,10 +158,10 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
                 Some(problem) => UnusableReason::CouldNotStart(problem),
             }
         }
-        Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
-        Err(CopyError::Grader(why)) => return Err(why),
+        Err(CopyError::Submission(reason)) => UnusableReason::Unreadable(reason),
+        Err(CopyError::Grader(reason)) => return Err(reason),
     };
-    Ok(StagedProgram::from_unusable(path, why))
+    Ok(StagedProgram::from_unusable(path, reason))
 }
 
 /// Copies an open program into a new folder, where it is called `name`.

@@ -27,8 +27,8 @@ impl SceneTask {
     }
 
     /// Creates the result of the scene for the case that no run was judged.
-    pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
-        SceneResult::without_run(&self.name, self.scene.step_count(), verdict, why)
+    pub fn without_run(&self, verdict: Verdict, reason: Reason) -> SceneResult {
+        SceneResult::without_run(&self.name, self.scene.step_count(), verdict, reason)
     }
 
     /// Creates the result of the scene for the case that the grader or the machine failed.

@@ -89,11 +89,11 @@ impl GraderFolder {
         Ok(grader)
     }
 
-    fn create(place: &Path) -> io::Result<Self> {
+    fn create(parent: &Path) -> io::Result<Self> {
         const MAX_TRIES: u32 = 10;
         let mut problem = io::Error::other("another process removes every new folder there");
         for _ in 0..MAX_TRIES {
-            let path = create_private(FOLDER_PREFIX, place)?.keep();
+            let path = create_private(FOLDER_PREFIX, parent)?.keep();
             let lock = path.join(LOCK_FILE);
             let lock_file = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
@@ -129,8 +129,8 @@ impl Drop for GraderFolder {
 }
 
 /// Creates a new folder that only its owner can enter.
-fn create_private(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
-    tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
+fn create_private(prefix: &str, parent: &Path) -> io::Result<tempfile::TempDir> {
+    tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(parent)
 }
 
 fn is_root() -> bool {
@@ -142,9 +142,9 @@ pub fn remove_abandoned() {
     remove_abandoned_in(&std::env::temp_dir());
 }
 
-fn remove_abandoned_in(place: &Path) {
+fn remove_abandoned_in(parent: &Path) {
     let Ok(own) = fs::metadata("/proc/self") else { return };
-    for entry in fs::read_dir(place).into_iter().flatten().flatten() {
+    for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let path = entry.path();
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(FOLDER_PREFIX));
         // The entry itself is checked, not the target of a link. Folders of other users are left to these users.

@@ -180,9 +180,9 @@ fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     let last = |magic: &[u8; 4], size: usize| end.windows(size).rfind(|record| record.starts_with(magic));
     let Some(record) = last(b"PK\x05\x06", 22) else { return Ok(None) };
     let entries = u16::from_le_bytes([record[10], record[11]]);
-    let of_large = last(b"PK\x06\x06", 56).filter(|_| entries == u16::MAX);
-    let of_large = of_large.and_then(|record| Some(u64::from_le_bytes(record[32..40].try_into().ok()?)));
-    Ok(Some(of_large.unwrap_or(entries.into())))
+    let zip64_entries = last(b"PK\x06\x06", 56).filter(|_| entries == u16::MAX);
+    let zip64_entries = zip64_entries.and_then(|record| Some(u64::from_le_bytes(record[32..40].try_into().ok()?)));
+    Ok(Some(zip64_entries.unwrap_or(entries.into())))
 }
 
 /// Returns the first bytes of a file, and rewinds it.
@@ -353,14 +353,14 @@ impl ArchiveReader<'_> {
         match self.folder {
             None => drop(self.copy_file(input, &mut io::sink())?),
             Some(folder) => {
-                let place = folder.join(&path);
-                if let Some(parent) = place.parent() {
+                let target = folder.join(&path);
+                if let Some(parent) = target.parent() {
                     fs::create_dir_all(parent).map_err(ArchiveError::Folder)?;
                 }
-                let mut output = File::create_new(&place).map_err(ArchiveError::Folder)?;
+                let mut output = File::create_new(&target).map_err(ArchiveError::Folder)?;
                 let is_program = self.copy_file(input, &mut output)? == FileKind::Program;
                 let mode = if executable || is_program { 0o755 } else { 0o644 };
-                fs::set_permissions(&place, fs::Permissions::from_mode(mode)).map_err(ArchiveError::Folder)?;
+                fs::set_permissions(&target, fs::Permissions::from_mode(mode)).map_err(ArchiveError::Folder)?;
             }
         }
         self.files.push(path);

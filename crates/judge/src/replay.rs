@@ -165,9 +165,9 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             let is_last = stop.is_some() || self.is_complete();
             let is_short = is_last || workers.began_shortly_ago();
             let mut stop_after = None;
-            let at_once =
+            let reads_meanwhile =
                 !is_short && current.has_waiting_step() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
-            if at_once {
+            if reads_meanwhile {
                 let (shape, rest) = (self.step_rules, self.remaining_work());
                 workers.judge_while(&current, &shape, rest, || stop_after = self.read_batch(&mut next, BATCH_STEPS));
             } else if current.has_waiting_step() {
@@ -196,7 +196,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 self.outcome.trailing_bytes = self.reader.has_more();
                 break;
             }
-            if at_once {
+            if reads_meanwhile {
                 stop = stop_after;
                 std::mem::swap(&mut current, &mut next);
             } else {

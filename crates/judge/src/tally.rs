@@ -196,8 +196,8 @@ impl<'a> Tally<'a> {
         let theirs = &self.frame.impulses;
         self.is_identical &= own.len() == theirs.len()
             && own.iter().zip(theirs).all(|(own, logged)| LoggedImpulse::from(*own).is_same(logged));
-        let by_pair = Contacts::from_impulses(theirs);
-        let logged = |own: &Impulse| pair_key(own.pair).and_then(|key| by_pair.indices_of(key).next());
+        let logged_contacts = Contacts::from_impulses(theirs);
+        let logged = |own: &Impulse| pair_key(own.pair).and_then(|key| logged_contacts.indices_of(key).next());
         let mut own_keys: Vec<_> = own.iter().filter_map(|own| pair_key(own.pair)).collect();
         own_keys.sort_unstable();
         for expected in own.iter().filter(|own| logged(own).is_none()) {
@@ -316,8 +316,8 @@ impl Observer for Tally<'_> {
                 }
                 QuickComparison::Same | QuickComparison::Undecided => {}
             }
-            let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
-            places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
+            let slots = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
+            slots.for_each(|(slot, bytes)| *slot = f64::from_le_bytes(*bytes));
             self.compare_polynomial(&coefficients[..bytes.len() / 8], || {
                 let (_, pair, which) =
                     order.locate_polynomial(number).expect("a pass logs the polynomials of these pairs");

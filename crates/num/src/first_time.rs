@@ -130,19 +130,19 @@ fn sorted_real_parts<'a>(zeros: &Zeros, storage: &'a mut [f64; MAX_DEGREE]) -> &
     let mut length = 0;
     for &(re, im) in zeros.as_slice() {
         if im.abs() < MIN_IMAGINARY_PART {
-            let mut place = length;
+            let mut index = length;
             if re < storage[0] {
-                while place > 0 {
-                    storage[place] = storage[place - 1];
-                    place -= 1;
+                while index > 0 {
+                    storage[index] = storage[index - 1];
+                    index -= 1;
                 }
             } else {
-                while place > 0 && storage[place - 1] > re {
-                    storage[place] = storage[place - 1];
-                    place -= 1;
+                while index > 0 && storage[index - 1] > re {
+                    storage[index] = storage[index - 1];
+                    index -= 1;
                 }
             }
-            storage[place] = re;
+            storage[index] = re;
             length += 1;
         }
     }

@@ -63,12 +63,12 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
         }
         for i in 1..self.length {
             let moved = self.list[i];
-            let mut place = i;
-            while place > 0 && self.list[place - 1].lo > moved.lo {
-                self.list[place] = self.list[place - 1];
-                place -= 1;
+            let mut index = i;
+            while index > 0 && self.list[index - 1].lo > moved.lo {
+                self.list[index] = self.list[index - 1];
+                index -= 1;
             }
-            self.list[place] = moved;
+            self.list[index] = moved;
         }
         let mut last = 0;
         for i in 1..self.length {

@@ -371,8 +371,8 @@ pub fn copy_little_endian(numbers: &[f64], room: &mut [u8]) {
     if cfg!(target_endian = "little") {
         room.copy_from_slice(pulp::bytemuck::cast_slice(numbers));
     } else {
-        for (place, number) in room.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
-            *place = number.to_le_bytes();
+        for (bytes, number) in room.as_chunks_mut::<8>().0.iter_mut().zip(numbers) {
+            *bytes = number.to_le_bytes();
         }
     }
 }

@@ -43,12 +43,12 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Earl
             b"" | b"-" => continue,
             _ => {}
         }
-        let Some(place) = FLAGS.iter().position(|flag| matches_flag(flag, word)) else {
+        let Some(index) = FLAGS.iter().position(|flag| matches_flag(flag, word)) else {
             return Err(wrong_argument_exit(program, word, b"Couldn't find match for argument"));
         };
-        let flag = &FLAGS[place];
+        let flag = &FLAGS[index];
         let title = format!("-{} (--{})", flag.letter, flag.name);
-        if values[place].is_some() {
+        if values[index].is_some() {
             return Err(wrong_argument_exit(program, title.as_bytes(), b"Argument already set!"));
         }
         let Some(value) = words.next() else {
@@ -59,9 +59,9 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Earl
         {
             return Err(wrong_argument_exit(program, title.as_bytes(), &text));
         }
-        values[place] = Some(value);
+        values[index] = Some(value);
     }
-    let value = |letter: &str| FLAGS.iter().position(|flag| flag.letter == letter).and_then(|place| values[place]);
+    let value = |letter: &str| FLAGS.iter().position(|flag| flag.letter == letter).and_then(|index| values[index]);
     let text = |letter: &str| value(letter).map(|bytes| OsString::from_vec(bytes.to_vec()));
     let switch = |letter: &str, default: Option<bool>| {
         value(letter).and_then(|bytes| parse_boolean(bytes).ok().flatten()).or(default).unwrap_or(false)

@@ -31,7 +31,7 @@ const THEME_1: [usize; FLAGS.len()] = [4, 0, 1, 2, 3, 5, 6];
 /// Returns the flags in the order of the usage text of a program named `program`.
 pub(crate) fn list_flags(program: &[u8]) -> impl Iterator<Item = &'static Flag> {
     let is_theme_1 = program.windows(NAME_1.len()).any(|part| part == NAME_1);
-    (0..FLAGS.len()).map(move |place| &FLAGS[if is_theme_1 { THEME_1[place] } else { place }])
+    (0..FLAGS.len()).map(move |index| &FLAGS[if is_theme_1 { THEME_1[index] } else { index }])
 }
 
 /// The prefix of the names of Theme 1's programs.

@@ -33,11 +33,11 @@ pub fn format_pixel(value: f64) -> String {
 }
 
 /// Returns the decades from the one at or below `least` to the one at or above `greatest`, as powers of ten.
-pub fn decade_range(least: f64, greatest: f64) -> (i32, i32) {
+pub fn decade_range(lowest: f64, highest: f64) -> (i32, i32) {
     #[expect(clippy::cast_possible_truncation, reason = "a logarithm of a finite double is below 400")]
     let power = |value: f64, round: fn(f64) -> f64| round(value.log10()).clamp(-400.0, 400.0) as i32;
-    let low = power(least, f64::floor);
-    (low, power(greatest, f64::ceil).max(low + 1))
+    let low = power(lowest, f64::floor);
+    (low, power(highest, f64::ceil).max(low + 1))
 }
 
 #[cfg(test)]

@@ -65,8 +65,8 @@ impl Painter {
         let colored = |count: usize, default: Rgb, list: &[(usize, Color)]| {
             let mut colors = vec![default; count];
             for &(index, color) in list {
-                if let Some(place) = colors.get_mut(index) {
-                    *place = color.into();
+                if let Some(entry) = colors.get_mut(index) {
+                    *entry = color.into();
                 }
             }
             colors
@@ -171,20 +171,20 @@ impl Painter {
     }
 
     fn draw_disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
-        let place = self.view.to_pixels(center);
+        let pixel = self.view.to_pixels(center);
         let radius = self.view.to_pixel_length(radius).max(MIN_WIDTH);
-        if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
+        if !pixel.iter().all(|value| value.is_finite()) || !radius.is_finite() {
             return;
         }
         let frame = self.frame(4.0);
-        let nearest: Point = std::array::from_fn(|k| place[k].clamp(frame.low[k], frame.high[k]));
-        let away = [nearest[0] - place[0], nearest[1] - place[1]];
+        let nearest: Point = std::array::from_fn(|k| pixel[k].clamp(frame.low[k], frame.high[k]));
+        let away = [nearest[0] - pixel[0], nearest[1] - pixel[1]];
         let distance = away[0].hypot(away[1]);
         if distance > radius {
             return;
         }
         if radius < MAX_DISC_RADIUS {
-            shapes.push(Shape::Disc { center: place, radius, paint });
+            shapes.push(Shape::Disc { center: pixel, radius, paint });
             return;
         }
         if matches!(paint, Paint::Dashed(_)) {
@@ -194,7 +194,7 @@ impl Painter {
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];
-                frame.clip_half_plane(|[x, y]| radius - ((x - place[0]) * unit[0] + (y - place[1]) * unit[1]))
+                frame.clip_half_plane(|[x, y]| radius - ((x - pixel[0]) * unit[0] + (y - pixel[1]) * unit[1]))
             }
             false => frame.clip_half_plane(|_| 1.0),
         };
@@ -211,15 +211,15 @@ impl Painter {
     }
 
     fn draw_half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
-        let place = self.view.to_pixels(point);
+        let pixel = self.view.to_pixels(point);
         // The y axis points down in the picture.
         let (x, y) = (normal.x, -normal.y);
         let length = x.hypot(y);
-        if !(length > 0.0) || !length.is_finite() || !place.iter().all(|value| value.is_finite()) {
+        if !(length > 0.0) || !length.is_finite() || !pixel.iter().all(|value| value.is_finite()) {
             return;
         }
         let unit = [x / length, y / length];
-        let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
+        let above = |[x, y]: Point| (x - pixel[0]) * unit[0] + (y - pixel[1]) * unit[1];
         let points = self.frame(4.0).clip_half_plane(|point| -above(point));
         if points.len() > 2 {
             shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE_DEPTH) });
@@ -238,15 +238,15 @@ impl Painter {
     }
 
     fn write(&self, step: u32, time: f64, shapes: &mut Vec<Shape>) {
-        let place = [8.0, f64::from(self.size().height()) - 8.0];
+        let position = [8.0, f64::from(self.size().height()) - 8.0];
         let text = format!("step {step}  t {}", format_short(time));
-        shapes.push(Shape::Text { place, text, color: self.background.contrasting_ink() });
+        shapes.push(Shape::Text { place: position, text, color: self.background.contrasting_ink() });
     }
 }
 
 impl Trail {
     /// Continues the path to the particle's new position.
-    fn extend(&mut self, time: f64, place: Vec2) {
+    fn extend(&mut self, time: f64, point: Vec2) {
         while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
             self.points.pop_front();
         }
@@ -257,7 +257,7 @@ impl Trail {
                 keep
             });
         }
-        self.points.push_back((time, place));
+        self.points.push_back((time, point));
     }
 
     /// Draws the parts of the path that are in the picture.

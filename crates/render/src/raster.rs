@@ -93,10 +93,10 @@ impl Raster {
     fn draw_text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
         let paint = to_paint(Paint::Solid(color));
         let top = base - f64::from(DOT_SIZE * font::LETTER_HEIGHT);
-        for (place, letter) in text.chars().enumerate() {
+        for (index, letter) in text.chars().enumerate() {
             let Some(rows) = font::letter_rows(letter) else { continue };
             #[expect(clippy::cast_precision_loss, reason = "labels are short")]
-            let start = left + place as f64 * f64::from(DOT_SIZE * font::LETTER_WIDTH);
+            let start = left + index as f64 * f64::from(DOT_SIZE * font::LETTER_WIDTH);
             for (row, bits) in (0_u32..).zip(rows) {
                 for column in (0..5_u32).filter(|column| bits & (0b10000 >> column) != 0) {
                     let x = to_f32(start + f64::from(DOT_SIZE * column));

@@ -35,12 +35,12 @@ impl Extent {
 
     /// Widens the box to contain the particles at `positions`.
     pub fn add(&mut self, scene: &Scene, positions: &[f64]) {
-        for (particle, place) in scene.particles.iter().zip(positions.chunks_exact(2)) {
+        for (particle, position) in scene.particles.iter().zip(positions.chunks_exact(2)) {
             let radius = particle.radius.clamp(0.0, MAX_COORDINATE);
             // Bodies without a position in the plane (NaN) are not drawn.
-            if place.iter().all(|coordinate| coordinate.abs() < MAX_COORDINATE) {
-                self.low = Vec2::new(self.low.x.min(place[0] - radius), self.low.y.min(place[1] - radius));
-                self.high = Vec2::new(self.high.x.max(place[0] + radius), self.high.y.max(place[1] + radius));
+            if position.iter().all(|coordinate| coordinate.abs() < MAX_COORDINATE) {
+                self.low = Vec2::new(self.low.x.min(position[0] - radius), self.low.y.min(position[1] - radius));
+                self.high = Vec2::new(self.high.x.max(position[0] + radius), self.high.y.max(position[1] + radius));
             }
         }
     }
@@ -70,9 +70,9 @@ impl Extent {
             return *self;
         }
         let half = start.half_size();
-        let most = MAX_WIDENING * half.x.max(half.y);
-        let (center, reach) = (start.center(), Vec2::new(most, most));
-        if !(most > 0.0) {
+        let max_reach = MAX_WIDENING * half.x.max(half.y);
+        let (center, reach) = (start.center(), Vec2::new(max_reach, max_reach));
+        if !(max_reach > 0.0) {
             return *self;
         }
         let (low, high) = (center - reach, center + reach);

@@ -60,7 +60,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let scene = &Scene { collision, ..scene.clone() };
     let (State { positions: x, velocities: v }, h) = (State::for_scene(scene), scene.time_step);
     let is_implicit = scene.integrator.is_implicit();
-    let at_which = if is_implicit { "x + h v" } else { "x" };
+    let position_formula = if is_implicit { "x + h v" } else { "x" };
     let force_positions: Vec<f64> = x.iter().zip(&v).map(|(x, v)| if is_implicit { x + h * v } else { *x }).collect();
     let all = gradients(scene, &force_positions, &v);
     let has_any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
@@ -84,7 +84,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
             |particle: usize| [(*name).to_owned(), particle.to_string(), format_vector(vector_at(gradient, particle))];
         particles.clone().map(row)
     });
-    let mut text = format!("Forces at {at_which}\n");
+    let mut text = format!("Forces at {position_formula}\n");
     text += &if parts.is_empty() { "  none\n".to_owned() } else { render_table(["", "particle", "gradient"], rows) };
     let formulas: BTreeSet<&str> = scene.forces.iter().map(force_formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));

@@ -219,7 +219,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
         let at = |list: &[f64], factor: f64| {
             list.len()
                 .checked_sub(power + 1)
-                .map_or_else(|| "none".to_owned(), |place| format_exact(list[place] * factor))
+                .map_or_else(|| "none".to_owned(), |index| format_exact(list[index] * factor))
         };
         let mark = if wrong.contains(&power) { Cell::with_style(TextStyle::Wrong, "<- differs") } else { "".into() };
         table.add_row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
@@ -321,14 +321,14 @@ pub(crate) fn format_polynomial(coefficients: &[f64], number: FormatFn) -> Strin
         return "0 (no coefficient)".to_owned();
     }
     let mut text = String::new();
-    for (place, &value) in coefficients.iter().enumerate().filter(|(place, value)| *place == 0 || **value != 0.0) {
-        text += match (place, value.is_sign_negative()) {
+    for (index, &value) in coefficients.iter().enumerate().filter(|(index, value)| *index == 0 || **value != 0.0) {
+        text += match (index, value.is_sign_negative()) {
             (0, false) => "",
             (0, true) => "-",
             (_, false) => " + ",
             (_, true) => " - ",
         };
-        let letter = match coefficients.len() - 1 - place {
+        let letter = match coefficients.len() - 1 - index {
             0 => String::new(),
             1 => "t".to_owned(),
             power => format!("t^{power}"),

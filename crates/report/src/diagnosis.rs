@@ -77,7 +77,7 @@ impl Diagnosis {
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
         }
-        for (place, case) in self.cases.iter().enumerate() {
+        for (index, case) in self.cases.iter().enumerate() {
             // A note that many traces have, such as a crash, is written once.
             let is_alike = |other: &&Case| {
                 case.note.is_some()
@@ -85,10 +85,10 @@ impl Diagnosis {
                     && other.explanations.is_empty()
                     && case.note == other.note
             };
-            if self.cases[..place].iter().any(|earlier| is_alike(&earlier)) {
+            if self.cases[..index].iter().any(|earlier| is_alike(&earlier)) {
                 continue;
             }
-            let more = self.cases[place + 1..].iter().filter(is_alike).count();
+            let more = self.cases[index + 1..].iter().filter(is_alike).count();
             let _ = writeln!(text, "{}", render_head(case, more, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
                 text += &render_mistakes(std::slice::from_ref(other), style);

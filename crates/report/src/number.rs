@@ -44,8 +44,8 @@ pub fn group_digits(value: u64) -> String {
         return digits;
     }
     let mut grouped = String::with_capacity(digits.len() + digits.len() / 3);
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+    for (index, digit) in digits.chars().enumerate() {
+        if index > 0 && (digits.len() - index).is_multiple_of(3) {
             grouped.push(' ');
         }
         grouped.push(digit);
@@ -68,23 +68,23 @@ pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
     // If the parts before the decimal point have different lengths, digits can't be compared.
     let integer_length = |text: &str| text.find('.').unwrap_or(text.len());
-    let place = if integer_length(&texts.0) == integer_length(&texts.1) { common } else { 0 };
-    (texts.0, texts.1, parts.then_some(place))
+    let difference_start = if integer_length(&texts.0) == integer_length(&texts.1) { common } else { 0 };
+    (texts.0, texts.1, parts.then_some(difference_start))
 }
 
 /// Formats both values with as many decimals as needed. If they are very large or very small, both have the same power
 /// of ten. Returns `None` if no notation fits both.
 fn format_alike(expected: f64, actual: f64) -> Option<(String, String)> {
-    let most = expected.abs().max(actual.abs());
+    let larger = expected.abs().max(actual.abs());
     let power = |value: f64| -> Option<i32> { format!("{value:e}").split_once('e')?.1.parse().ok() };
-    if !(expected.is_finite() && actual.is_finite()) || most == 0.0 {
+    if !(expected.is_finite() && actual.is_finite()) || larger == 0.0 {
         return None;
     }
-    let (top, gap) = (power(most)?, (expected - actual).abs());
+    let (top, gap) = (power(larger)?, (expected - actual).abs());
     let gap_power = if gap > 0.0 { power(gap)? } else { top };
     // Values of very different sizes can't be compared digit by digit.
-    let least = expected.abs().min(actual.abs());
-    if least > 0.0 && top - power(least)? > 4 {
+    let smaller = expected.abs().min(actual.abs());
+    if smaller > 0.0 && top - power(smaller)? > 4 {
         return None;
     }
     let digits = (top - gap_power + 2).clamp(6, 17);

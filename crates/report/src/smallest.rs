@@ -28,7 +28,7 @@ pub fn render_text(small: &SmallestScene, style: Style) -> String {
     let causes = note.iter().cloned().chain(first).chain(explanation_lines).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
     parts.extend(small.difference.clone());
-    parts.extend(small.calculation.iter().map(|by_hand| heading("By hand") + by_hand));
+    parts.extend(small.calculation.iter().map(|calculation| heading("By hand") + calculation));
     let run = format!("{} -s small.xml -d 0 -o small.bin", quote(&small.program));
     let check = note.is_none().then(|| "fosssim-oracle check small.xml small.bin --all".to_owned());
     let commands = std::iter::once(run).chain(check).chain([small.command.clone()]);

@@ -200,8 +200,8 @@ fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
     }
 }
 
-fn describe_left_out(why: NotRunReason) -> String {
-    match why {
+fn describe_left_out(reason: NotRunReason) -> String {
+    match reason {
         NotRunReason::Limits { scenes: 1, .. } => {
             "not run: the preceding scene exceeded a limit of time, memory or output".to_owned()
         }
@@ -216,10 +216,10 @@ fn describe_left_out(why: NotRunReason) -> String {
     }
 }
 
-fn describe_unusable(why: &UnusableReason) -> String {
-    match why {
+fn describe_unusable(reason: &UnusableReason) -> String {
+    match reason {
         UnusableReason::CouldNotStart(problem) => format!("the program {}", RunEnd::CouldNotStart(problem.clone())),
-        UnusableReason::Unreadable(why) => format!("the program can't be used: {why}"),
+        UnusableReason::Unreadable(reason) => format!("the program can't be used: {reason}"),
         UnusableReason::NoProgram { sought, found } => {
             let sought = format!("the upload has no program called {sought}");
             match found {

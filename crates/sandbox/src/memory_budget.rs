@@ -60,13 +60,13 @@ impl LimitedGroup {
 fn limited_groups() -> &'static [LimitedGroup] {
     static LIMITED_GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     LIMITED_GROUPS.get_or_init(|| {
-        let places = crate::supervisor::memory_groups();
-        let limited = |place: &PathBuf| {
+        let folders = crate::supervisor::memory_groups();
+        let limited = |folder: &PathBuf| {
             let names = [("memory.max", "memory.current"), ("memory.limit_in_bytes", "memory.usage_in_bytes")];
-            let (limit, usage) = names.into_iter().find(|(limit, _)| place.join(limit).exists())?;
-            Some(LimitedGroup { limit: place.join(limit), usage: place.join(usage) })
+            let (limit, usage) = names.into_iter().find(|(limit, _)| folder.join(limit).exists())?;
+            Some(LimitedGroup { limit: folder.join(limit), usage: folder.join(usage) })
         };
-        places.iter().filter_map(limited).collect()
+        folders.iter().filter_map(limited).collect()
     })
 }
 

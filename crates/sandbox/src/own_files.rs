@@ -57,9 +57,9 @@ fn list_entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
 fn list_modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins_with(&entry.file_name(), kind));
     let pythons = pythons.iter().flat_map(|folder| list_entries(folder).filter(is_python));
-    let places = pythons.flat_map(|python| MODULE_FOLDERS.map(|name| python.path().join(name)));
-    let modules = places.flat_map(|place| {
-        list_entries(&place).filter(|entry| begins_with(&entry.file_name(), MODULE_PREFIX)).collect::<Vec<_>>()
+    let folders = pythons.flat_map(|python| MODULE_FOLDERS.map(|name| python.path().join(name)));
+    let modules = folders.flat_map(|folder| {
+        list_entries(&folder).filter(|entry| begins_with(&entry.file_name(), MODULE_PREFIX)).collect::<Vec<_>>()
     });
     modules.map(|entry| entry.path()).collect()
 }

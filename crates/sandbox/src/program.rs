@@ -124,11 +124,11 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<ProgramF
     if interpreter.is_empty() {
         return Err(StartProblem::NoInterpreter);
     }
-    let place = |path: &Path| path.is_file().then(|| path.to_path_buf());
+    let existing = |path: &Path| path.is_file().then(|| path.to_path_buf());
     if !is_system_path(Path::new(interpreter)) {
         return Err(StartProblem::NotTheSystems { path: interpreter.escape_default().to_string() });
     }
-    let mut found = place(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
+    let mut found = existing(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
     let mut resolved = require_system_file(&found, own)?;
     let mut script = Script { interpreter_arguments: vec![interpreter.to_owned()], ..Script::default() };
     if interpreter.ends_with("/env") {
@@ -139,8 +139,8 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<ProgramF
         if name.starts_with('-') {
             return Err(missing(&name, "; the only supported option of env is -S"));
         }
-        let place = PROGRAM_FOLDERS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
-        found = place.ok_or_else(|| missing(&name, hint))?;
+        let file = PROGRAM_FOLDERS.iter().find_map(|folder| existing(&Path::new(folder).join(&name)));
+        found = file.ok_or_else(|| missing(&name, hint))?;
         resolved = require_system_file(&found, own)?;
         script.interpreter_arguments = [vec![name], arguments].concat();
     } else if !rest.is_empty() {

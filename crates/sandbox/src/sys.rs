@@ -439,9 +439,9 @@ pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
     unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_ID_VALID, &raw const id) == 0 }
 }
 
-/// Returns the processor time of this process. With `of_thread`, that of the calling thread alone.
-pub(super) fn processor_time(of_thread: bool) -> Duration {
-    let time = rustix::time::clock_gettime(if of_thread { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime });
+/// Returns the processor time of this process. With `this_thread`, that of the calling thread alone.
+pub(super) fn processor_time(this_thread: bool) -> Duration {
+    let time = rustix::time::clock_gettime(if this_thread { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 

@@ -35,12 +35,12 @@ impl LatePolicy {
 
     /// Returns the same time of day, `days` later in the course's calendar, where a day may have 23 or 25 hours.
     fn days_after(&self, due: i64, days: i64) -> i64 {
-        let by_calendar = self.time_zone.and_then(|zone| {
+        let calendar_time = self.time_zone.and_then(|zone| {
             let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
             Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
         });
         // The course has no time zone, or the clocks of its zone skip that time.
-        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
+        calendar_time.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
     /// Returns the delay of a submission that arrived at `arrived_at`. The student's own due date applies if there is

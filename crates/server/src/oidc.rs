@@ -170,8 +170,8 @@ impl Provider {
         let http = |request| send(self.agent.clone(), request);
         let configuration = CoreProviderMetadata::discover_async(self.issuer.clone(), &http).await;
         let metadata = configuration.map_err(|error| {
-            let why = format!("{:#}", anyhow!(error));
-            tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
+            let error = format!("{:#}", anyhow!(error));
+            tracing::warn!(issuer = %*self.issuer, error, "the provider's configuration can't be read");
             ProviderFault::Unavailable(format!("{} does not answer correctly", self.label))
         });
         *published = Some(KnownConfiguration { requested_at: Instant::now(), metadata: metadata.clone() });
@@ -183,11 +183,11 @@ impl Provider {
     async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
         let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
-        let by_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
+        let uses_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
         let redirect = RedirectUrl::new(redirect.to_owned()).map_err(untrusted_answer)?;
         Ok(CoreClient::from_provider_metadata(metadata, self.client.clone(), Some(self.secret.clone()))
             .set_redirect_uri(redirect)
-            .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
+            .set_auth_type(if uses_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
     }
 
     /// Returns the provider's URL at which a person signs in.
@@ -286,8 +286,8 @@ fn verify_token<'a>(
 
 /// Returns the error for an answer that is not trusted. It lists all causes.
 fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
-    let why: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
-    ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
+    let message: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
+    ProviderFault::Rejected(format!("the provider's answer is not accepted: {message}"))
 }
 
 /// Sends a request in a thread that may block.

@@ -80,14 +80,14 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
 /// attempt.
 fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let bodies = scene.particles.iter().map(|particle| particle.position);
-    let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
+    let positions = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
     let mut all = Vec::new();
     for decimals in 0..=2 {
-        for origin in places.clone() {
+        for origin in positions.clone() {
             let mut components = [origin.x, origin.y].into_iter().cycle();
             all.push(map_numbers(scene, |kind, value| {
-                let is_place = kind == NumberKind::Place;
-                let origin = if is_place { components.next().unwrap_or_default() } else { 0.0 };
+                let is_position = kind == NumberKind::Place;
+                let origin = if is_position { components.next().unwrap_or_default() } else { 0.0 };
                 round(value - origin, decimals)
             }));
         }

@@ -25,7 +25,7 @@ impl Student {
     /// made. A student with [`Student::MAX_MISTAKES`] mistakes stays unchanged.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
-        if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
+        if let Some(free) = self.mistakes.iter_mut().find(|slot| slot.is_none()) {
             *free = mistake;
             self.areas |= mistake.map_or(0, |mistake| area_bit(mistake.area()));
             self.has_slips |= matches!(mistake, Some(Mistake::Step(StepMistake::Edit(_))));

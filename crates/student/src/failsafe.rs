@@ -169,10 +169,10 @@ impl<'a> RigidBody<'a> {
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
         let count = zone.particles.len() as f64;
-        let by_count = is_unweighted(Mistake::FailsafeCenterUnweighted);
-        self.center = divide(self.center, if by_count { count } else { total });
-        let by_count = is_unweighted(Mistake::FailsafeMomentumUnweighted);
-        self.shift = divide(self.shift, if by_count { count } else { total });
+        let is_unweighted_center = is_unweighted(Mistake::FailsafeCenterUnweighted);
+        self.center = divide(self.center, if is_unweighted_center { count } else { total });
+        let is_unweighted_shift = is_unweighted(Mistake::FailsafeMomentumUnweighted);
+        self.shift = divide(self.shift, if is_unweighted_shift { count } else { total });
         if self.mistake() == Some(Mistake::FailsafeNoTranslation) {
             self.shift = Vec2::zeros();
         }

@@ -14,7 +14,7 @@ const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, StepFailure> {
     let (size, h) = (x.len(), world.scene.time_step);
     let is_linear = world.scene.integrator == Integrator::LinearizedImplicitEuler;
-    let [whole, mass, of_x, of_v] = if is_linear {
+    let [whole, mass, position_term, velocity_term] = if is_linear {
         [Term::Linear, Term::LinearMass, Term::LinearHx, Term::LinearHv]
     } else {
         [Term::Implicit, Term::ImplicitMass, Term::ImplicitHx, Term::ImplicitHv]
@@ -22,7 +22,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     let makes = |slip: Slip| world.student.makes_slip(whole, slip);
     let sign = if makes(Slip::MatrixSign) { -1.0 } else { 1.0 };
     let mut matrix = HessianSum { world, size, entries: vec![0.0; size * size], uses_velocities: false, weight: 1.0 };
-    for (uses_velocities, term) in [(false, of_x), (true, of_v)] {
+    for (uses_velocities, term) in [(false, position_term), (true, velocity_term)] {
         (matrix.uses_velocities, matrix.weight) = (uses_velocities, sign * world.weight(term, 1.0));
         for force in &world.scene.forces {
             matrix.add_force(force, x, v)?;
@@ -120,8 +120,8 @@ impl HessianSum<'_> {
             let is_assigned = has_slips && student.makes_slip(term, Slip::Assigned);
             for (r, entries) in block.iter().enumerate() {
                 for (c, entry) in entries.iter().enumerate() {
-                    let place = &mut self.entries[(2 * column + c) * self.size + 2 * row + r];
-                    *place = if is_assigned { weight * entry } else { *place + weight * entry };
+                    let target = &mut self.entries[(2 * column + c) * self.size + 2 * row + r];
+                    *target = if is_assigned { weight * entry } else { *target + weight * entry };
                 }
             }
         }
@@ -143,8 +143,8 @@ impl HessianSum<'_> {
                 continue;
             }
             let value = self.weight * self.world.whole_weight(Term::JacobianDrag, particle, 1.0) * coefficient;
-            let place = &mut self.entries[(2 * particle + axis) * (self.size + 1)];
-            *place = if student.makes_slip(Term::JacobianDrag, Slip::Assigned) { value } else { *place + value };
+            let entry = &mut self.entries[(2 * particle + axis) * (self.size + 1)];
+            *entry = if student.makes_slip(Term::JacobianDrag, Slip::Assigned) { value } else { *entry + value };
         }
     }
 }
@@ -200,8 +200,8 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     let n = if is_long { d } else { divide(d, l) };
     let outer = build_block(|r, c| n[r] * n[c]);
     let w = vector_at(v, b) - vector_at(v, a);
-    let of_outer = world.weight(Term::JacobianDampingOuter, l);
-    let mut damped = build_block(|r, c| of_outer * (n[r] * w[c]));
+    let outer_weight = world.weight(Term::JacobianDampingOuter, l);
+    let mut damped = build_block(|r, c| outer_weight * (n[r] * w[c]));
     let scalar = world.weight(Term::JacobianDampingScalar, l) * n.dot(&w);
     damped[0][0] += scalar;
     damped[1][1] += scalar;

@@ -149,8 +149,8 @@ fn apply_impulses(
 ) {
     let student = world.student;
     let anew = student.makes(Mistake::ImpulsesAnew);
-    let from_prediction = anew || student.makes(Mistake::ImpulsesFromPrediction);
-    let before = if from_prediction { prediction.clone() } else { state.clone() };
+    let uses_prediction = anew || student.makes(Mistake::ImpulsesFromPrediction);
+    let before = if uses_prediction { prediction.clone() } else { state.clone() };
     let chosen = match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesFirstOnly) => &contacts[..1],
         Some(Mistake::ImpulsesLastOnly) => &contacts[contacts.len() - 1..],

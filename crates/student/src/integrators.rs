@@ -86,11 +86,17 @@ fn position_rate(world: &World, term: Term, right_rate: &[f64], other_rate: &[f6
 
 /// Makes one step of the explicit integrators, which move positions with the old or the new velocities. The forces are
 /// those of the world `forces`, whose program may have a different author.
-fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
+fn step_explicit(
+    world: &World,
+    forces: &World,
+    [position_term, velocity_term]: [Term; 2],
+    moves_by_old: bool,
+    state: &mut State,
+) {
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a multiplication, because a change of sign would also change the sign of a NaN.
     let minus_one = black_box(-1.0);
-    let x = if student.makes_slip(of_v, Slip::ForcesAfterMove) {
+    let x = if student.makes_slip(velocity_term, Slip::ForcesAfterMove) {
         &student.add_scaled_lists(&state.x, h, &state.v)
     } else {
         &state.x
@@ -103,9 +109,9 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
         *entry /= world.masses[k];
     }
     let old = state.v.clone();
-    world.advance(of_v, &mut state.v, h, &accelerations);
+    world.advance(velocity_term, &mut state.v, h, &accelerations);
     let (right, other) = if moves_by_old { (&old, &state.v) } else { (&state.v, &old) };
-    world.advance(of_x, &mut state.x, h, &position_rate(world, of_x, right, other));
+    world.advance(position_term, &mut state.x, h, &position_rate(world, position_term, right, other));
 }
 
 /// Sets the entries of fixed particles in a right-hand side to zero.
@@ -126,15 +132,15 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
     let predicted = world.student.add_scaled_lists(&state.x, h, &state.v);
     let twice = makes(StepMistake::LinearVelocitiesTwice);
     let v: Vec<f64> = state.v.iter().map(|v| v + if twice { *v } else { 0.0 }).collect();
-    let at_start = makes(StepMistake::LinearAllAtStart);
-    let of_forces = if at_start || makes(StepMistake::LinearForcesAtStart) { &state.x } else { &predicted };
-    let mut rhs = forces::gradient(world, of_forces, &v);
+    let uses_start = makes(StepMistake::LinearAllAtStart);
+    let force_positions = if uses_start || makes(StepMistake::LinearForcesAtStart) { &state.x } else { &predicted };
+    let mut rhs = forces::gradient(world, force_positions, &v);
     for (k, entry) in rhs.iter_mut().enumerate() {
         *entry = *entry * black_box(-1.0) * h * world.whole_weight(Term::LinearRight, k / 2, 1.0);
     }
     clear_fixed(world, Term::Linear, &mut rhs);
-    let of_matrix = if at_start || makes(StepMistake::LinearMatrixAtStart) { &state.x } else { &predicted };
-    let mut matrix = hessians::system_matrix(world, of_matrix, &v)?;
+    let matrix_positions = if uses_start || makes(StepMistake::LinearMatrixAtStart) { &state.x } else { &predicted };
+    let mut matrix = hessians::system_matrix(world, matrix_positions, &v)?;
     linear::solve(&mut matrix, &mut rhs, &mut linear::Workspace::default());
     let old = state.v.clone();
     world.advance(Term::LinearVelocities, &mut state.v, 1.0, &rhs);
@@ -145,7 +151,8 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
 fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
-    let most = if world.student.makes_no_mistake() { MAX_NEWTON_ITERATIONS } else { MAX_MISTAKEN_NEWTON_ITERATIONS };
+    let max_iterations =
+        if world.student.makes_no_mistake() { MAX_NEWTON_ITERATIONS } else { MAX_MISTAKEN_NEWTON_ITERATIONS };
     let (mut enough, mut iterations) = (1e-9, u32::MAX);
     for slip in world.student.slips(Term::Newton) {
         match slip {
@@ -161,7 +168,7 @@ fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(
     *solves = 0;
     while update >= enough && *solves < iterations {
         *solves += 1;
-        if *solves > most {
+        if *solves > max_iterations {
             return Err(StepFailure::Newton);
         }
         let x: Vec<f64> = state.x.iter().zip(&dx).map(|(x, dx)| x + dx).collect();

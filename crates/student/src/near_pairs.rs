@@ -83,7 +83,7 @@ impl<'a> NearPairSearch<'a> {
                     && self
                         .edge_boxes(other)
                         .into_iter()
-                        .any(|of_edge| self.boxes_meet(self.particle_box(one), of_edge))
+                        .any(|edge_box| self.boxes_meet(self.particle_box(one), edge_box))
             }
             PairKind::ParticleHalfPlane => {
                 !(makes(StepMistake::NearPairsLastHalfPlaneMissing) && other + 1 == scene.half_planes.len())

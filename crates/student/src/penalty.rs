@@ -85,8 +85,8 @@ impl PenaltySum<'_> {
         let h = if makes(Slip::ThicknessTwice) { 2.0 * h } else { h };
         let first = if makes(Slip::NoRadii) { 0.0 } else { first };
         let second = if makes(Slip::NoRadii) || makes(Slip::NoOtherRadius) { 0.0 } else { second };
-        let of_test = if makes(Slip::NoThickness) || makes(Slip::ThicknessInDepth) { 0.0 } else { h };
-        let is_near = distance < first + second + of_test || makes(Slip::Always);
+        let test_thickness = if makes(Slip::NoThickness) || makes(Slip::ThicknessInDepth) { 0.0 } else { h };
+        let is_near = distance < first + second + test_thickness || makes(Slip::Always);
         if !is_near || (detection == CollisionDetection::Contest && distance == 0.0) {
             return None;
         }

@@ -116,8 +116,8 @@ impl SimplePass<'_> {
 
     /// Returns the velocity from which an impulse is computed.
     fn velocity(&self, kind: &SimpleKind, state: &State, particle: usize) -> Vec2 {
-        let from_start = self.makes(kind.response, Slip::StartVelocity);
-        vector_at(if from_start { &self.start } else { &state.v }, particle)
+        let uses_start = self.makes(kind.response, Slip::StartVelocity);
+        vector_at(if uses_start { &self.start } else { &state.v }, particle)
     }
 
     /// Returns the mass of a body of the pair, which is infinite if the body is fixed.
@@ -175,24 +175,24 @@ impl SimplePass<'_> {
         let (two, three) = (edge.first, edge.second);
         let [x1, x2, x3] = [one, two, three].map(|particle| vector_at(&state.x, particle));
         let [v1, v2, v3] = [one, two, three].map(|particle| vector_at(&state.v, particle));
-        let on_line = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let alpha = closest_alpha(student, Term::ClosestPoint, on_line, clamp);
+        let unclamped = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
+        let alpha = closest_alpha(student, Term::ClosestPoint, unclamped, clamp);
         let n = x2 + alpha * (x3 - x2) - x1;
         let seen = match () {
             () if self.makes(kind.approach, Slip::Middle) => 0.5,
             () if self.makes(kind.approach, Slip::Mirrored) => 1.0 - alpha,
-            () if self.makes(kind.approach, Slip::Unclamped) => on_line,
+            () if self.makes(kind.approach, Slip::Unclamped) => unclamped,
             () => alpha,
         };
-        let [of_particle, of_first] = self.tested_velocities(kind, [v1, v2]);
+        let [particle_velocity, edge_velocity] = self.tested_velocities(kind, [v1, v2]);
         let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
         let radii = [self.world.scene.particles[one].radius, self.world.edge_radius(kind.overlap, index)];
-        let is_off = self.makes(Term::ClosestPoint, Slip::NothingBeyondEnds) && !(0.0..=1.0).contains(&on_line);
-        if is_off || !self.is_colliding(kind, n, radii, of_particle - of_first - turning) {
+        let is_off = self.makes(Term::ClosestPoint, Slip::NothingBeyondEnds) && !(0.0..=1.0).contains(&unclamped);
+        if is_off || !self.is_colliding(kind, n, radii, particle_velocity - edge_velocity - turning) {
             return None;
         }
         let n = self.contact_vector(kind, n);
-        self.push_edge(state, [one, two, three], n, closest_alpha(student, kind.response, on_line, clamp));
+        self.push_edge(state, [one, two, three], n, closest_alpha(student, kind.response, unclamped, clamp));
         Some(n)
     }
 
@@ -201,12 +201,12 @@ impl SimplePass<'_> {
         let (u, bounce, beta) = (unit(n), self.restitution_factor(kind), 1.0 - alpha);
         let impulse = |pass: &Self, state: &State| {
             let [v1, v2, v3] = [one, two, three].map(|particle| pass.velocity(kind, state, particle));
-            let of_edge = match () {
+            let edge_velocity = match () {
                 () if pass.makes(Term::RespondEdgeStill, Slip::Missing) => Vec2::zeros(),
                 () if pass.makes(Term::RespondEdgeStill, Slip::Middle) => v2 + 0.5 * (v3 - v2),
                 () => v2 + alpha * (v3 - v2),
             };
-            bounce * (of_edge - v1).dot(&u)
+            bounce * (edge_velocity - v1).dot(&u)
         };
         let mut masses = [one, two, three].map(|particle| self.mass(kind, particle));
         if self.makes(kind.response, Slip::SwappedMasses) {
@@ -219,7 +219,7 @@ impl SimplePass<'_> {
         let [m1, m2, m3] = masses;
         let is_plain = self.makes(kind.response, Slip::SharesNotSquared);
         let (low, high) = if is_plain { (beta, alpha) } else { (beta * beta, alpha * alpha) };
-        let [of_two, of_three] = match () {
+        let [second_share, third_share] = match () {
             () if self.makes(kind.response, Slip::FullShares) => [1.0, 1.0],
             () if self.makes(kind.response, Slip::EqualShares) => [0.5, 0.5],
             () if self.makes(kind.response, Slip::SharesExchanged) => [alpha, beta],
@@ -232,9 +232,9 @@ impl SimplePass<'_> {
             return;
         }
         let second = if is_sequential { impulse(self, state) } else { first };
-        self.push(kind, state, (1, two), n, -(of_two * second / (m2 / m1 + low + high * m2 / m3) * u));
+        self.push(kind, state, (1, two), n, -(second_share * second / (m2 / m1 + low + high * m2 / m3) * u));
         let third = if is_sequential { impulse(self, state) } else { first };
-        self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
+        self.push(kind, state, (2, three), n, -(third_share * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 
     /// Detects and resolves a contact with a half-plane. Returns the contact vector, or `None` if there is no contact.

@@ -66,7 +66,7 @@ impl World {
     /// Returns the factor by which a slip multiplies a quantity, or 1 if the slip has another effect.
     fn factor(&self, Edit { term, slip }: Edit, particle: usize, length: f64) -> f64 {
         let mass = self.masses[2 * particle];
-        let of_mass = |used: f64| if term.row().mass < 0 { mass / used } else { used / mass };
+        let mass_factor = |used: f64| if term.row().mass < 0 { mass / used } else { used / mass };
         let power = |base: f64, by: i8| {
             let product: f64 = (0..by.unsigned_abs()).map(|_| base).product();
             if by < 0 { 1.0 / product } else { product }
@@ -77,9 +77,9 @@ impl World {
             Slip::Doubled => 2.0,
             Slip::Halved => 0.5,
             Slip::Mass(by) => power(mass, by),
-            Slip::WholeMass => of_mass(mass.trunc()),
-            Slip::MassIndex => of_mass(self.masses[particle]),
-            Slip::MassOfFirst => of_mass(self.masses[0]),
+            Slip::WholeMass => mass_factor(mass.trunc()),
+            Slip::MassIndex => mass_factor(self.masses[particle]),
+            Slip::MassOfFirst => mass_factor(self.masses[0]),
             Slip::Step(by) => power(self.scene.time_step, by),
             Slip::Length(by) => power(length, by),
             _ => 1.0,

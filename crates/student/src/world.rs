@@ -164,12 +164,12 @@ impl<'a> ParticlePairs<'a> {
 
     fn pairs_with_half_planes(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let makes = |mistake: Mistake| self.student.makes(mistake);
-        let most = match () {
+        let max_half_planes = match () {
             () if self.scene.particles[particle].fixed && makes(Mistake::PairsFixedSkipped) => 0,
             () if makes(Mistake::PairsFirstHalfPlaneOnly) => 1,
             () => usize::MAX,
         };
-        (0..self.scene.half_planes.len().min(most))
+        (0..self.scene.half_planes.len().min(max_half_planes))
             .map(move |index| Pair { particle, object: Object::HalfPlane(index) })
     }
 }

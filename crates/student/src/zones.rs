@@ -57,12 +57,12 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
         let mut merged: Vec<Zone> = Vec::new();
         // A student who requires two shared particles still finds that a zone of one particle is part of another zone.
         let meet = |one: &Zone, other: &Zone| {
-            let most = if student.makes(Mistake::ZonesJoinTwoShared) {
+            let needed = if student.makes(Mistake::ZonesJoinTwoShared) {
                 one.particles.len().min(other.particles.len()).min(2)
             } else {
                 return !one.particles.is_disjoint(&other.particles);
             };
-            one.particles.intersection(&other.particles).count() >= most
+            one.particles.intersection(&other.particles).count() >= needed
         };
         for zone in zones {
             match merged.iter_mut().find(|other| meet(other, &zone)) {

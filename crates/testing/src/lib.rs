@@ -103,17 +103,17 @@ impl fmt::Display for Need {
 ///
 /// # Panics
 /// Panics if `FOSSSIM_REQUIRE` names the need, or contains an unknown word.
-pub fn skip(need: Need, why: impl fmt::Display) {
-    let why = why.to_string().replace(['\n', '\t'], " ");
+pub fn skip(need: Need, reason: impl fmt::Display) {
+    let reason = reason.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();
     if let Err(words) = check_allowed(need, &required) {
-        panic!("{words}: {why}");
+        panic!("{words}: {reason}");
     }
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
-    eprintln!("skipped {test}: {why}");
+    eprintln!("skipped {test}: {reason}");
     let Some(list) = skip_list() else { return };
     // Each line is one write, because the tests of one run are threads and processes.
-    let line = format!("{need}\t{test}\t{why}\n");
+    let line = format!("{need}\t{test}\t{reason}\n");
     let file = fs::OpenOptions::new().create(true).append(true).open(list);
     drop(file.and_then(|mut file| file.write_all(line.as_bytes())));
 }
@@ -139,8 +139,8 @@ pub fn skip_list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {
         return Some(list.into());
     }
-    let of_cargo = std::env::var_os("CARGO").is_some() && std::env::var_os("NEXTEST").is_none();
-    of_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
+    let runs_by_cargo = std::env::var_os("CARGO").is_some() && std::env::var_os("NEXTEST").is_none();
+    runs_by_cargo.then(|| std::env::temp_dir().join(format!("fosssim-skips-{}", std::os::unix::process::parent_id())))
 }
 
 /// Returns a summary of the list: for each need, the tests that were skipped, and the first reason.
@@ -148,14 +148,14 @@ pub fn summary(list: &str) -> String {
     let mut lines = String::new();
     let mut total = 0;
     for (_, need) in NAMES {
-        let of_need: Vec<(&str, &str)> =
+        let skips: Vec<(&str, &str)> =
             list.lines().filter_map(|line| line.strip_prefix(need)?.strip_prefix('\t')?.split_once('\t')).collect();
-        let mut tests: Vec<&str> = of_need.iter().map(|(test, _)| *test).collect();
+        let mut tests: Vec<&str> = skips.iter().map(|(test, _)| *test).collect();
         tests.sort_unstable();
         tests.dedup();
-        if let Some((_, why)) = of_need.first() {
+        if let Some((_, reason)) = skips.first() {
             total += tests.len();
-            lines += &format!("  {need}: {} ({why})\n", tests.join(", "));
+            lines += &format!("  {need}: {} ({reason})\n", tests.join(", "));
         }
     }
     match total {

@@ -128,8 +128,8 @@ fn collect_wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result
 
 /// Returns an error if no trace of the scene can have a verdict, or if the trace could not be read to its end.
 fn reject_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
-    if let Some(why) = describe_no_verdict(outcome, &scene.name) {
-        bail!(why);
+    if let Some(message) = describe_no_verdict(outcome, &scene.name) {
+        bail!(message);
     }
     match (&outcome.stop, trace.failure()) {
         // It is unknown whether later steps were read, so their faults are not used.

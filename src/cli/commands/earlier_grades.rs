@@ -26,8 +26,8 @@ struct GradesFile {
 /// # Errors
 ///
 /// Fails if the file can't be read, or contains no grade.
-pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
-    let file = if place.is_dir() { FilePlace::new(place, FILE_NAME) } else { FilePlace::new("", place) };
+pub(super) fn read(path: &Path) -> Result<Vec<EarlierGrade>> {
+    let file = if path.is_dir() { FilePlace::new(path, FILE_NAME) } else { FilePlace::new("", path) };
     let shown = input::printable_name(&file.path()).to_string();
     let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {

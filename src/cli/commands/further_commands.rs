@@ -24,8 +24,8 @@ impl FurtherCommands<'_> {
             return Vec::new();
         };
         let mut lines = Vec::new();
-        let of_trace = scene.verdict.is_wrong_trace();
-        let hints = if self.plan.staff_hints < Hints::Full && of_trace { " --hints full" } else { "" };
+        let is_wrong_trace = scene.verdict.is_wrong_trace();
+        let hints = if self.plan.staff_hints < Hints::Full && is_wrong_trace { " --hints full" } else { "" };
         let has_one_scene = self.plan.scenes().count() == 1;
         if !has_one_scene || !hints.is_empty() {
             lines.push(format!("$ {} --scene {}{hints}", self.grade_command(submission), quote(&scene.scene)));

@@ -158,12 +158,12 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     })?;
     let mut text = String::new();
     for promise in &table.promises {
-        let (state, why) = match &promise.state {
+        let (state, note) = match &promise.state {
             selftest::PromiseState::Kept => ("kept", String::new()),
             selftest::PromiseState::Broken(how) => ("BROKEN", format!(" [{how}]")),
-            selftest::PromiseState::NotTested(why) => ("not tested", format!(" [{why}]")),
+            selftest::PromiseState::NotTested(note) => ("not tested", format!(" [{note}]")),
         };
-        let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
+        let _ = writeln!(text, "{state:<11} {:<28} {}{note}", promise.attack, promise.promise);
     }
     let broken = table.broken_promises().count();
     let kept = format_count(table.count_kept() as u64, "promise");

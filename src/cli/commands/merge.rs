@@ -46,12 +46,12 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
-            let place = FilePlace::new(folder, name);
-            match place.open_folder() {
+            let source = FilePlace::new(folder, name);
+            match source.open_folder() {
                 Ok(from) => copy_folder(&from, &FilePlace::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
-                    return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
+                    return Err(error).with_context(|| format!("cannot read {}", source.path().display()));
                 }
             }
         }
@@ -60,8 +60,8 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let (suite, skipped) = (first.common.suite.clone(), first.skipped_entries.clone());
     let order = names.clone();
     let mut grades: Vec<Grade> = parts.into_iter().flat_map(|(_, part)| part.grades).collect();
-    let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
-    grades.sort_by_key(place);
+    let position = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
+    grades.sort_by_key(position);
     Grade::record_same_programs(&mut grades);
     grade::add_warnings(&mut grades, &skipped);
     let pages = Pages::new(Some(&output), false)?;
@@ -88,14 +88,14 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, ShardResult)>> {
     let mut parts: Vec<(PathBuf, ShardResult)> = Vec::new();
     for folder in folders {
         let listing = fs::read_dir(folder).with_context(|| format!("cannot read the folder {}", folder.display()))?;
-        let mut places: Vec<PathBuf> =
+        let mut candidates: Vec<PathBuf> =
             listing.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-        places.sort();
-        places.insert(0, folder.clone());
+        candidates.sort();
+        candidates.insert(0, folder.clone());
         let before = parts.len();
-        for place in places {
-            if let Some(part) = ShardResult::read(&place)? {
-                parts.push((place, part));
+        for folder in candidates {
+            if let Some(part) = ShardResult::read(&folder)? {
+                parts.push((folder, part));
             }
         }
         if parts.len() == before {
@@ -110,13 +110,13 @@ fn require_complete<'a>(
     parts: &'a [(PathBuf, ShardResult)],
     arguments: &MergeArguments,
 ) -> Result<(&'a ShardResult, PathBuf)> {
-    let (place, first) = parts.first().context("the folders contain no shard")?;
+    let (folder, first) = parts.first().context("the folders contain no shard")?;
     for (other, part) in parts {
         if let Some(what) = first.common.describe_difference(&part.common) {
-            bail!("{} and {} belong to different gradings: {what}", place.display(), other.display());
+            bail!("{} and {} belong to different gradings: {what}", folder.display(), other.display());
         }
     }
-    let mut grades = parts.iter().flat_map(|(place, part)| part.grades.iter().map(move |grade| (place, grade)));
+    let mut grades = parts.iter().flat_map(|(folder, part)| part.grades.iter().map(move |grade| (folder, grade)));
     if let Some((_, one)) = grades.next()
         && let Some((other, grade)) = grades.find(|(_, grade)| !one.has_same_suite(grade))
     {
@@ -132,7 +132,7 @@ fn require_complete<'a>(
         let found: Vec<String> = parts
             .iter()
             .filter(|(_, part)| part.number == number)
-            .map(|(place, _)| place.display().to_string())
+            .map(|(folder, _)| folder.display().to_string())
             .collect();
         match found.len() {
             0 => missing.push(number.to_string()),
@@ -150,10 +150,10 @@ fn require_complete<'a>(
     }
     let output = match (&arguments.output, arguments.folders.as_slice()) {
         (Some(output), _) => output.clone(),
-        (None, [folder]) if parts.iter().all(|(place, _)| place != folder) => folder.clone(),
+        (None, [folder]) if parts.iter().all(|(part, _)| part != folder) => folder.clone(),
         _ => bail!("choose a folder for the results with --output DIR"),
     };
-    if parts.iter().any(|(place, _)| *place == output) {
+    if parts.iter().any(|(folder, _)| *folder == output) {
         bail!("{} is a shard's folder; choose another --output", output.display());
     }
     Ok((first, output))

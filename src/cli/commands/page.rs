@@ -46,5 +46,5 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
 /// Returns the part of a suite that the readers of the page may see.
 fn select_visible_suite(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find_suite(name)?;
-    CourseSuite::from_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
+    CourseSuite::from_plan(&plan, reader).map_err(|error| anyhow!("the suite {name}: {error}"))
 }

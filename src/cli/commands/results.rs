@@ -54,8 +54,8 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
     if reports.iter().filter(|report| report.file.is_none()).count() > 1 {
         bail!("only one format can go to standard output; give the others a file: --format NAME=FILE");
     }
-    let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
-    let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
+    let path = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
+    let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(path).collect();
     if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
         bail!("two formats have the same file, {}; give each its own", twice.display());
     }
@@ -66,11 +66,11 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
 ///
 /// # Errors
 ///
-/// Fails if such a format was requested. For HTML, `of_html` is added to the message.
-pub(super) fn reject_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
+/// Fails if such a format was requested. For HTML, `html_hint` is added to the message.
+pub(super) fn reject_several(reports: &[Report], submissions: usize, html_hint: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
-            let hint = if *format == Format::Html { of_html } else { "" };
+            let hint = if *format == Format::Html { html_hint } else { "" };
             bail!("--format {name} is for one submission, but there are {submissions}{hint}")
         }
         None => Ok(()),

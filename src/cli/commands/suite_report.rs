@@ -160,8 +160,8 @@ fn render_head(plan: &Plan, style: Style) -> String {
         let (hints, meaning) = level.describe();
         let groups = plan.groups.iter().filter(|group| group.marking.hints == level);
         let groups: Vec<String> = groups.map(|group| to_one_line(&group.name)).collect();
-        let of_groups = if several { format!(" of {}", groups.join(", ")) } else { String::new() };
-        let _ = writeln!(text, "hints for students{of_groups}: {hints}: {meaning}");
+        let suffix = if several { format!(" of {}", groups.join(", ")) } else { String::new() };
+        let _ = writeln!(text, "hints for students{suffix}: {hints}: {meaning}");
     }
     text
 }

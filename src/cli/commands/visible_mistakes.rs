@@ -42,8 +42,8 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
     // Small scenes are tried first, because most mistakes already show in these.
     scenes.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
-    let is_of_students = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
-    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_of_students).collect();
+    let is_from_students = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
+    let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_from_students).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
     // Most mistakes in writing a trace concern lists. Traces that contain only states have no lists.
     let concerns = |row: &Row| {
@@ -62,7 +62,7 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
         if scene_count == 0 && !concerns(row) {
             continue;
         }
-        let place = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
+        let index = parts.iter().position(|part| part.area == row.area).unwrap_or_else(|| {
             parts.push(VisibleMistakes {
                 area: row.area,
                 mistake_count: 0,
@@ -71,11 +71,11 @@ pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
             });
             parts.len() - 1
         });
-        parts[place].mistake_count += 1;
+        parts[index].mistake_count += 1;
         match scene_count {
-            0 => parts[place].invisible_mistakes.push(row.id),
+            0 => parts[index].invisible_mistakes.push(row.id),
             MAX_LISTED_SCENES.. => {}
-            _ => parts[place].rarely_visible.push(row.id),
+            _ => parts[index].rarely_visible.push(row.id),
         }
     }
     parts

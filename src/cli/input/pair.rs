@@ -112,13 +112,13 @@ fn parse_moving(word: &str) -> Result<PointMotion> {
         return Ok(PointMotion { start, shift: end - start });
     }
     // A plus sign may also belong to a number or to its exponent, as in `1e+3,+2+4,1`.
-    let separates = |&(place, _): &(usize, char)| {
-        let before = word[..place].trim_end();
+    let separates = |&(index, _): &(usize, char)| {
+        let before = word[..index].trim_end();
         before.contains(',') && before.ends_with(|c: char| c.is_ascii_digit() || c == '.')
     };
     match word.char_indices().filter(|&(_, c)| c == '+').find(separates) {
-        Some((place, _)) => {
-            Ok(PointMotion { start: parse_vector(&word[..place])?, shift: parse_vector(&word[place + 1..])? })
+        Some((index, _)) => {
+            Ok(PointMotion { start: parse_vector(&word[..index])?, shift: parse_vector(&word[index + 1..])? })
         }
         None => Ok(PointMotion { start: parse_vector(word)?, shift: Vec2::zeros() }),
     }

@@ -201,9 +201,9 @@ impl Explanation {
         for (number, claim) in self.claims.iter().enumerate() {
             let mut parts = claim.split('/');
             let (Some(subject), Some(guess)) = (parts.next(), parts.next()) else { continue };
-            let of_subject = all.entry(subject).or_default();
+            let subject_claims = all.entry(subject).or_default();
             if !(guess.is_empty() || is_part && number == 0) {
-                of_subject.push((guess, claim));
+                subject_claims.push((guess, claim));
             }
         }
         all

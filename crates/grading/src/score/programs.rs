@@ -38,11 +38,11 @@ impl SubmissionGrading<'_> {
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
             .collect();
-        if let Some((end, why)) =
+        if let Some((end, reason)) =
             skipped_scenes::find_first_skipped(&plan.skip_limits, options.fail_fast, &verdicts_and_times)
         {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
-                *result = (skipped_scenes::skipped_result(scene, why), false);
+                *result = (skipped_scenes::skipped_result(scene, reason), false);
             }
         }
         self.time_scenes(&mut results);

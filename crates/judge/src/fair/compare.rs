@@ -178,18 +178,18 @@ pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> 
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
     }
-    let (mut least, mut most) = (0.0_f64, f64::INFINITY);
+    let (mut min_factor, mut max_factor) = (0.0_f64, f64::INFINITY);
     for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
         let right = expected.iter().fold(0.0, |sum, r| sum * t + r.value);
         let logged = actual.iter().fold(0.0, |sum, s| sum * t + s);
         let (right, logged) = if right < 0.0 { (-right, -logged) } else { (right, logged) };
         if right > 2.0 * room {
-            least = least.max((logged - logged_room) / (right + room));
-            most = most.min((logged + logged_room) / (right - room));
+            min_factor = min_factor.max((logged - logged_room) / (right + room));
+            max_factor = max_factor.min((logged + logged_room) / (right - room));
         }
     }
     // The rounding errors of the intervals' ends are much smaller than 1e-9.
-    least > most + 1e-9 * most.abs()
+    min_factor > max_factor + 1e-9 * max_factor.abs()
 }
 
 /// Compares like [`compare`], but only polynomials of equal length, and only with the best factor. Returns `None` if
@@ -374,9 +374,9 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     }
     let needed =
         held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (DOUBLE_TOLERANCE * r.bound) });
-    let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
-    let most = max_factor(dropped);
-    (least.is_finite() && least <= most).then_some([least, most])
+    let min_factor = needed.fold(0.0, |maximum: f64, factor| if factor <= maximum { maximum } else { factor });
+    let limit = max_factor(dropped);
+    (min_factor.is_finite() && min_factor <= limit).then_some([min_factor, limit])
 }
 
 /// The tolerance of a coefficient that is much larger than all others, in units of its bound. Both sides are rounded,
@@ -387,7 +387,7 @@ const DOUBLE_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 /// any factor.
 fn max_factor(dropped: &[BoundedValue]) -> f64 {
     MIN_LEADING_COEFFICIENT
-        / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
+        / dropped.iter().fold(0.0_f64, |maximum, r| maximum.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
 }
 
 /// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
@@ -422,11 +422,11 @@ pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64
     }
     // The divisor is the largest size that counts as round-off of the expected polynomial, plus the rounding errors of
     // both sides.
-    let least = actual.iter().map(|s| s.abs()).sum::<f64>() / (DOUBLE_TOLERANCE * norm);
-    let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
+    let min_factor = actual.iter().map(|s| s.abs()).sum::<f64>() / (DOUBLE_TOLERANCE * norm);
+    let largest = actual.iter().fold(0.0_f64, |maximum, s| maximum.max(s.abs()));
     let squares = actual.iter().map(|s| s * s).sum::<f64>();
     let is_one = |size: f64| (size - 1.0).abs() < 1e-9;
-    (least > 1.0 && !is_one(largest) && !is_one(squares)).then_some(least)
+    (min_factor > 1.0 && !is_one(largest) && !is_one(squares)).then_some(min_factor)
 }
 
 /// Returns the number of coefficients that are wrong if the factor is `scale`.

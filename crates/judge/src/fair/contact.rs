@@ -184,11 +184,11 @@ impl<'a> Tolerances<'a> {
         let size = largest_size(&own.positions);
         let speed = largest_size(&own.velocities);
         // These two collision types compute velocities from displacements over the time step.
-        let from_positions = match context.scene.collision {
+        let displacement_speed = match context.scene.collision {
             Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
             Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
         };
-        Self { position: roundings * size, velocity: roundings * (speed + from_positions), sensitivity }
+        Self { position: roundings * size, velocity: roundings * (speed + displacement_speed), sensitivity }
     }
 
     /// Returns the tolerance of a particle's position at the end of the step.

@@ -30,14 +30,14 @@ impl<'a> Context<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
-        let of_kinds = PairKindMap::from_fn(|kind| counts[kind] as u64);
+        let calls_by_kind = PairKindMap::from_fn(|kind| counts[kind] as u64);
         let (per_pass, pairs) = (pairs.polynomial_count(), pairs.count());
         let records_per_step = Layout::for_scene(scene).records_per_step();
         Self {
             scene,
             polynomials_per_pass: per_pass,
             pair_count: pairs,
-            calls_by_kind: of_kinds,
+            calls_by_kind,
             records_per_step,
             ordinary_range: OrdinaryRange::for_scene(scene),
             computes_all_bounds: false,

@@ -69,12 +69,12 @@ impl FactorStatistics {
     /// Returns the smallest and the largest usual factor, or `None` if there are no factors. Outliers are left out,
     /// because they prove nothing about missing coefficients.
     pub(super) fn usual_range(&self) -> Option<[f64; 2]> {
-        let [least, greatest] = self.range()?;
-        let of_all = |sum: i64| sum as f64 / self.count as f64;
-        let mean = of_all(self.exponents);
-        let spread = (of_all(self.squares) - mean * mean).max(0.0).sqrt();
+        let [lowest, highest] = self.range()?;
+        let average = |sum: i64| sum as f64 / self.count as f64;
+        let mean = average(self.exponents);
+        let spread = (average(self.squares) - mean * mean).max(0.0).sqrt();
         let reach = 1.0 + FAIR_OUTLIER_DEVIATIONS * spread;
-        Some([least.max(power_of_two(mean - reach)), greatest.min(power_of_two(mean + reach + 1.0))])
+        Some([lowest.max(power_of_two(mean - reach)), highest.min(power_of_two(mean + reach + 1.0))])
     }
 }
 

@@ -31,9 +31,9 @@ impl BoundedPointMotion {
     /// Returns the motion between two points. The coordinates may deviate by rounding errors of `size`, because a
     /// program may use rotated or shifted axes. A point that is provably at rest does not deviate.
     fn from_positions([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
-        let start_place = with_component_errors(start, size);
-        let shift = if rests { BoundedVector::default() } else { with_component_errors(end, size) - start_place };
-        Self { start: start_place, shift }
+        let start_position = with_component_errors(start, size);
+        let shift = if rests { BoundedVector::default() } else { with_component_errors(end, size) - start_position };
+        Self { start: start_position, shift }
     }
 }
 
@@ -102,13 +102,13 @@ impl BoundedPairMotion {
     /// Returns the pair's motion in a step.
     pub fn for_pair(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
-        let places = |particle| [vector_at(q_start, particle), vector_at(q_end, particle)];
+        let positions = |particle| [vector_at(q_start, particle), vector_at(q_end, particle)];
         let size = |particles: &[usize]| {
-            let all = particles.iter().flat_map(|&particle| places(particle));
-            all.fold(0.0_f64, |most, place| most.max(l1_norm(place)))
+            let all = particles.iter().flat_map(|&particle| positions(particle));
+            all.fold(0.0_f64, |maximum, position| maximum.max(l1_norm(position)))
         };
         let way = |particle, size| {
-            let [start, end] = places(particle);
+            let [start, end] = positions(particle);
             BoundedPointMotion::from_positions([start, end], size, scene.particles[particle].fixed && start == end)
         };
         let radius = |particle: usize| BoundedValue::from_exact(scene.particles[particle].radius);
@@ -237,15 +237,15 @@ impl BoundedPairMotion {
     /// Returns the vector to the nearest point of the second object at time `t`. Beyond the ends of an edge it differs
     /// from [`Self::normal`]. Round-off may move a particle that arrives at an end beyond it.
     pub fn vector_to_nearest_point(&self, t: f64) -> Vec2 {
-        let place = |way: &BoundedPointMotion| {
-            let place = way.start + BoundedValue::from_exact(t) * way.shift;
-            Vec2::new(place.x.value, place.y.value)
+        let position = |way: &BoundedPointMotion| {
+            let position = way.start + BoundedValue::from_exact(t) * way.shift;
+            Vec2::new(position.x.value, position.y.value)
         };
         let Self::Edge(ways, _) = self else {
             let normal = self.normal(t);
             return Vec2::new(normal.x.value, normal.y.value);
         };
-        let [x1, x2, x3] = [0, 1, 2].map(|way| place(&ways[way]));
+        let [x1, x2, x3] = [0, 1, 2].map(|way| position(&ways[way]));
         let edge = x3 - x2;
         x2 + ((x1 - x2).dot(&edge) / edge.dot(&edge)).clamp(0.0, 1.0) * edge - x1
     }
@@ -253,17 +253,17 @@ impl BoundedPairMotion {
     /// Returns the contact normal at time `t`, not normalized.
     pub fn normal(&self, t: f64) -> BoundedVector {
         let t = BoundedValue::from_exact(t);
-        let place = |way: &BoundedPointMotion| way.start + t * way.shift;
+        let position = |way: &BoundedPointMotion| way.start + t * way.shift;
         match self {
-            Self::Particles([one, two], _) => place(two) - place(one),
+            Self::Particles([one, two], _) => position(two) - position(one),
             Self::Edge([one, two, three], _) => {
-                let (x1, x2, x3) = (place(one), place(two), place(three));
+                let (x1, x2, x3) = (position(one), position(two), position(three));
                 let (a, b) = (x1 - x2, x3 - x2);
                 x2 + (a.dot(b) / b.dot(b)) * b - x1
             }
             Self::HalfPlane(way, _, point, q) => {
                 let q = rotate_axes(*q);
-                let w = rotate_axes(*point) - place(way);
+                let w = rotate_axes(*point) - position(way);
                 (w.dot(q) / q.dot(q)) * q
             }
         }

@@ -89,13 +89,13 @@ impl JudgementBuilder {
         // A polynomial that already fits, or that is judged only in the other form, needs no further check.
         let is_open = |pending: &&PendingPolynomials| {
             let (kind, number) = pending.place;
-            let is_of_other_form = self.judgement.form != Form::Either && !pending.counts_for_form(self.judgement.form);
+            let has_other_form = self.judgement.form != Form::Either && !pending.counts_for_form(self.judgement.form);
             // As long as further polynomials may follow, claims do not confirm a claimed factor.
             let is_confirmed = match pending.cause {
                 PendingCause::RoundOff => self.factors_of(kind).range().is_some_and(|range| !is_constant(range)),
                 _ => self.factors[kind][number].range().is_some() || self.identical_polynomials[kind][number] > 0,
             };
-            !is_of_other_form && (!is_confirmed || self.finding(pending).is_some())
+            !has_other_form && (!is_confirmed || self.finding(pending).is_some())
         };
         let open: Vec<StepPending> =
             step.pending.iter().filter(is_open).map(|&polynomials| StepPending { polynomials, is_wrong }).collect();
@@ -155,11 +155,11 @@ impl JudgementBuilder {
             if self.judgement.findings.first_divergence.is_some_and(|first| is_consequence(&first, &finding)) {
                 self.judgement.findings.first_divergence = None;
             }
-            if let Some(place) =
+            if let Some(index) =
                 self.judgement.findings.examples.iter().position(|known| known.kind() == finding.kind())
-                && self.judgement.findings.examples[place].step > finding.step
+                && self.judgement.findings.examples[index].step > finding.step
             {
-                self.judgement.findings.examples.remove(place);
+                self.judgement.findings.examples.remove(index);
             }
             self.add_finding(finding);
             self.judgement.findings.counts.add(finding.kind(), polynomials.count - 1);

@@ -26,8 +26,8 @@ impl OrdinaryRange {
         let position = Some(sizes.fold(0.0, f64::max)).filter(|size| *size > 0.0).unwrap_or(1.0);
         let fastest = scene.particles.iter().map(|particle| l1_norm(particle.velocity)).fold(0.0, f64::max);
         let velocity = fastest.max(position / scene.time_step);
-        let places = scene.particles.iter().map(|particle| particle.position);
-        Self { position, velocity, spread: spread(places) }
+        let positions = scene.particles.iter().map(|particle| particle.position);
+        Self { position, velocity, spread: spread(positions) }
     }
 
     /// Returns whether every value of the state is in the range.
@@ -39,7 +39,7 @@ impl OrdinaryRange {
     /// close. Returns `None` if every value is in the range.
     pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
-        let is_far = |value: f64, most: f64| !(value <= FAIR_REACH_FACTOR * most);
+        let is_far = |value: f64, limit: f64| !(value <= FAIR_REACH_FACTOR * limit);
         let far_particle = (0..particles).find(|&particle| {
             is_far(l1_norm(vector_at(&state.positions, particle)), self.position)
                 || is_far(l1_norm(vector_at(&state.velocities, particle)), self.velocity)

@@ -40,11 +40,11 @@ impl PendingPolynomials {
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
         // The factors are known only up to rounding errors.
         let room = 1e-9;
-        let (least, most) = (self.least_factor, self.greatest_factor);
-        if !(least.0 <= high * (1.0 + room)) {
-            return Some(least.1);
+        let (min_factor, max_factor) = (self.least_factor, self.greatest_factor);
+        if !(min_factor.0 <= high * (1.0 + room)) {
+            return Some(min_factor.1);
         }
-        (!(most.0 >= low * (1.0 - room))).then_some(most.1)
+        (!(max_factor.0 >= low * (1.0 - room))).then_some(max_factor.1)
     }
 
     /// Returns whether the polynomials are judged in a trace of this form.

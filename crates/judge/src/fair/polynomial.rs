@@ -79,10 +79,10 @@ impl StepJudgement {
         // A polynomial depends on its factor if the expected one is only round-off in each of its forms, and the logged
         // one is larger.
         let forms = std::iter::once(own).chain(expected.other_form(number));
-        let least = forms.map(|form| round_off_factor(form, list)).reduce(|one, other| Some(one?.min(other?)));
-        if let Some(least) = least.flatten().filter(|_| first.is_ok()) {
+        let min_factor = forms.map(|form| round_off_factor(form, list)).reduce(|one, other| Some(one?.min(other?)));
+        if let Some(min_factor) = min_factor.flatten().filter(|_| first.is_ok()) {
             if is_known {
-                self.add_pending(logged, (Form::Either, PendingCause::RoundOff), own, [least, f64::INFINITY]);
+                self.add_pending(logged, (Form::Either, PendingCause::RoundOff), own, [min_factor, f64::INFINITY]);
             }
             return PolynomialJudgement::DependsOnFactor;
         }
@@ -159,13 +159,13 @@ impl StepJudgement {
     /// shows it.
     pub(super) fn record_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
-        let is_of_course = || {
+        let has_course_form = || {
             compare(right, logged.coefficients, &[1.0]).is_err()
                 && possible_factors(right, logged.coefficients).is_none()
                 && compare(expected.polynomial(logged.number), logged.coefficients, &[1.0])
                     .is_ok_and(|found| found.scale.is_some())
         };
-        if self.course_form.is_none() && is_of_course() {
+        if self.course_form.is_none() && has_course_form() {
             self.course_form = Some(logged.place);
         }
     }
@@ -176,39 +176,41 @@ impl StepJudgement {
         logged: &LoggedPolynomial<'_>,
         (form, cause): (Form, PendingCause),
         expected: &[BoundedValue],
-        [least, most]: [f64; 2],
+        [min_factor, max_factor]: [f64; 2],
     ) {
-        let place = (logged.place.pair.kind, logged.number);
+        let kind_and_number = (logged.place.pair.kind, logged.number);
         let finding = || {
             let mismatch = compare_with_one(expected, logged.coefficients).err().unwrap_or(Mismatch::TooLong);
             let detail = wrong_polynomial_finding(logged, expected, mismatch);
             Finding { step: self.step, frame: self.frame, detail }
         };
-        let is_like =
-            |pending: &PendingPolynomials| (pending.place, pending.form, pending.cause) == (place, form, cause);
+        let is_like = |pending: &PendingPolynomials| {
+            (pending.place, pending.form, pending.cause) == (kind_and_number, form, cause)
+        };
         let Some(pending) = self.pending.iter().position(is_like) else {
             let finding = finding();
-            let (least, most) = ((least, finding), (most, finding));
+            let (min_factor, max_factor) = ((min_factor, finding), (max_factor, finding));
             self.pending.push(PendingPolynomials {
-                place,
+                place: kind_and_number,
                 form,
                 cause,
                 count: 1,
-                least_factor: least,
-                greatest_factor: most,
+                least_factor: min_factor,
+                greatest_factor: max_factor,
             });
             return;
         };
-        let PendingPolynomials { least_factor: (of_all, _), greatest_factor: (to_all, _), .. } = self.pending[pending];
-        let new = (least > of_all || most < to_all).then(finding);
+        let PendingPolynomials { least_factor: (old_least, _), greatest_factor: (old_greatest, _), .. } =
+            self.pending[pending];
+        let new = (min_factor > old_least || max_factor < old_greatest).then(finding);
         let pending = &mut self.pending[pending];
         pending.count += 1;
         if let Some(new) = new {
-            if least > of_all {
-                pending.least_factor = (least, new);
+            if min_factor > old_least {
+                pending.least_factor = (min_factor, new);
             }
-            if most < to_all {
-                pending.greatest_factor = (most, new);
+            if max_factor < old_greatest {
+                pending.greatest_factor = (max_factor, new);
             }
         }
     }

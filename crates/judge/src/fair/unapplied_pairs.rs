@@ -153,11 +153,11 @@ impl NearPairs {
         if candidates.len() > MAX_PAIRS {
             return None;
         }
-        let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
+        let mut particle_candidates: Vec<Vec<usize>> = vec![Vec::new(); particles];
         for (index, candidate) in candidates.iter().enumerate() {
-            candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
+            candidate.changes().iter().for_each(|(particle, _)| particle_candidates[*particle].push(index));
         }
-        find_unique_choice(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
+        find_unique_choice(&mut candidates, &particle_candidates, &mut rest, &wrong, tolerances);
         // A pair is kept only if it explains all its particles, and its removal may affect its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
@@ -196,7 +196,7 @@ fn contest_layer(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
 /// reduces the choices of its neighbors.
 fn find_unique_choice(
     candidates: &mut [NearPair],
-    of_particle: &[Vec<usize>],
+    particle_candidates: &[Vec<usize>],
     rest: &mut [Vec2],
     wrong: &[bool],
     tolerances: &Tolerances<'_>,
@@ -205,8 +205,11 @@ fn find_unique_choice(
     while goes_on {
         goes_on = false;
         for particle in (0..wrong.len()).filter(|particle| wrong[*particle]) {
-            let open: Vec<usize> =
-                of_particle[particle].iter().copied().filter(|index| candidates[*index].excess.is_none()).collect();
+            let open: Vec<usize> = particle_candidates[particle]
+                .iter()
+                .copied()
+                .filter(|index| candidates[*index].excess.is_none())
+                .collect();
             if open.is_empty() || open.len() > MAX_PAIRS_PER_PARTICLE {
                 continue;
             }

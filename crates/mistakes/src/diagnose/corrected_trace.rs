@@ -22,11 +22,11 @@ pub struct CorrectedTrace {
 /// removed, because other traces contradict it.
 pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
     let own = &replace_contradicted(own, likely);
-    let of_all = likely
+    let agreements = likely
         .iter()
         .filter(|explanation| !explanation.is_not_finite())
         .flat_map(|explanation| find_agreement(own, explanation));
-    let mut explanations: Vec<Explanation> = of_all.collect();
+    let mut explanations: Vec<Explanation> = agreements.collect();
     if explanations.is_empty() {
         return CorrectedTrace {
             explanations: own.iter().filter_map(|explanation| remove_refuted(explanation, refuted)).collect(),

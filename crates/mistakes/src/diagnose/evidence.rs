@@ -48,7 +48,7 @@ impl OpenTrace {
 
 /// Returns the symptoms of a trace without the refuted statements.
 pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
-    let of_one = |explanation: &Explanation| {
+    let to_symptom = |explanation: &Explanation| {
         if is_refuted(&explanation.key) && find(&explanation.key).is_none() {
             return None;
         }
@@ -68,7 +68,7 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
     };
     list.iter()
         .filter(|explanation| explanation.is_about_program() || !explanation.claims.is_empty())
-        .filter_map(of_one)
+        .filter_map(to_symptom)
         .collect()
 }
 
@@ -109,14 +109,14 @@ impl Support<'_> {
 fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in traces.iter().enumerate() {
-        for (place, symptom) in
+        for (index, symptom) in
             trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_about_program())
         {
             let statement = symptom.explanation.statement();
             for word in symptom.allowed_statements.keys() {
                 let evidence = all.entry(word.as_str()).or_default();
-                evidence.symptoms.insert((number, place));
-                evidence.leading_traces += usize::from(place == 0 && *word == statement);
+                evidence.symptoms.insert((number, index));
+                evidence.leading_traces += usize::from(index == 0 && *word == statement);
                 // If several explanations have the same statement, the most detailed one is used.
                 let rank_of =
                     |explanation: &Explanation| (explanation.is_exhaustive(), !explanation.details.is_empty());
@@ -136,8 +136,8 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             )
         };
         evidence.is_known = row.is_some() || evidence.reported.is_some_and(is_named);
-        let place = evidence.symptoms.first().copied();
-        let first = place.map(|(trace, place)| &traces[trace].symptoms[place].explanation);
+        let first_symptom = evidence.symptoms.first().copied();
+        let first = first_symptom.map(|(trace, index)| &traces[trace].symptoms[index].explanation);
         let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
         for trace in traces {
             let reported = evidence.reported;
@@ -160,7 +160,7 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 /// Returns whether an explanation of a trace that does not allow `reported` contradicts it: both are about the same
 /// polynomials.
 fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
-    let is_of_formula = match &reported.topic {
+    let concerns_formula = match &reported.topic {
         ExplanationTopic::Polynomials { found, .. } => matches!(found, PolynomialEvidence::Guess(_)),
         ExplanationTopic::Mistake => {
             find(&reported.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area))
@@ -168,7 +168,7 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
         _ => false,
     };
     let subjects = reported.subjects();
-    is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
+    concerns_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
 /// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
@@ -181,9 +181,9 @@ pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
         !support.is_denied() && (support.reported.is_some() || is_known(word))
     };
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
-        let by_known = is_known(word).cmp(&is_known(other));
+        let known_order = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
-        a.weight().cmp(&b.weight()).then(by_known).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
+        a.weight().cmp(&b.weight()).then(known_order).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
     })?;
     // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
@@ -193,8 +193,8 @@ pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.leading_traces));
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
     let Some(reported) = best.reported else {
-        let &(trace, place) = best.symptoms.first()?;
-        return Some(explain_by_row(&traces[trace].symptoms[place].explanation, find(word)?, same_as));
+        let &(trace, index) = best.symptoms.first()?;
+        return Some(explain_by_row(&traces[trace].symptoms[index].explanation, find(word)?, same_as));
     };
     Some(Explanation { same_as, ..merge_explanations(reported, traces) })
 }

@@ -48,8 +48,8 @@ fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[E
     let ends = |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
     };
-    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
-    of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
+    let mut non_finite = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
+    non_finite.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
 /// The number of explained traces that one contradicting trace outweighs. A mistake that explains up to 8 traces is
@@ -62,22 +62,23 @@ const NAMED_PER_CONTRADICTION: usize = 8;
 /// contradicted by its own polynomials instead ([`evidence`](super::evidence)).
 fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])], refuted: &[String]) -> bool {
     let Some(row) = find(key).filter(|row| !is_formula_area(row.area)) else { return false };
-    let (stage, is_of_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
-    if !is_of_state && (stage.is_none() || is_empty_stage(row)) {
+    let (stage, concerns_state) = (area_stage(row.area), matches!(row.mistake, Mistake::Step(_)));
+    if !concerns_state && (stage.is_none() || is_empty_stage(row)) {
         return false;
     }
     let explains = |list: &[Explanation]| {
         list.iter().any(|explanation| alternative_statements(explanation).get(key) == Some(&true))
     };
-    let is_of_stage =
+    let has_same_stage =
         |explanation: &Explanation| explanation.names_stage() && (stage.is_none() || explanation.stage() == stage);
     let is_refuted = |explanation: &Explanation| {
         find(&explanation.key).is_some_and(|row| refuted.contains(&explanation.key) && area_stage(row.area) == stage)
     };
     let is_other = |explanation: &Explanation| explanation.is_complete() && !is_refuted(explanation);
     let is_open = |list: &[Explanation]| {
-        let is_wrong =
-            |explanation: &Explanation| is_of_stage(explanation) || is_refuted(explanation) || explanation.key == key;
+        let is_wrong = |explanation: &Explanation| {
+            has_same_stage(explanation) || is_refuted(explanation) || explanation.key == key
+        };
         !explains(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
     };
     let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
@@ -86,7 +87,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     let shows = |scene: &Scene, key: &str| mistake_is_visible_within(scene, key, &work);
     // Two mistakes in the same force or integrator, whose keys begin with the same word, are rivals: a program makes
     // one of them.
-    let is_rival = |other: &str| is_of_state && other.split('-').next() == key.split('-').next();
+    let is_rival = |other: &str| concerns_state && other.split('-').next() == key.split('-').next();
     let is_alone = |scene: &Scene| !others.iter().any(|other| !is_rival(other) && *other != key && shows(scene, other));
     let against = wrong.iter().filter(|(scene, list)| is_open(list) && shows(scene, key) && is_alone(scene));
     explained > 0 && against.take(needed).count() == needed

@@ -59,14 +59,14 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         polynomials.retain(|explanation| !explanation.reports_missing_polynomials());
     }
     for explanation in &mut known {
-        let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.pair_kind());
-        if let Some(kind) = of_kind {
-            let is_of_kind = |claim: &&String| {
+        let formula_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.pair_kind());
+        if let Some(kind) = formula_kind {
+            let concerns_kind = |claim: &&String| {
                 let kinds = PairKind::ALL.into_iter().filter(|candidate| kind.is_none_or(|kind| kind == *candidate));
                 kinds.flat_map(Subject::all_of_kind).any(|subject| claim.starts_with(&format!("{subject:?}/")))
             };
             let claims = polynomials.iter().flat_map(|explanation| &explanation.claims);
-            explanation.claims = claims.filter(is_of_kind).cloned().collect();
+            explanation.claims = claims.filter(concerns_kind).cloned().collect();
         }
     }
     if let [explanation] = &mut known[..]
@@ -98,8 +98,8 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     });
     let open = open.filter(|_| !is_contest);
     let stage = open.and_then(|scan| {
-        let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
-        stages::explain(&mut reference, scene, scan.wrong_steps.iter().chain(&scan.right_steps).filter(is_of_numbers))
+        let is_finite = |kept: &&KeptStep| kept.records.is_finite();
+        stages::explain(&mut reference, scene, scan.wrong_steps.iter().chain(&scan.right_steps).filter(is_finite))
     });
     if stage.as_ref().is_some_and(Explanation::is_about_pairs) {
         // If pairs are in a different order, or left out, their polynomials cannot be compared.

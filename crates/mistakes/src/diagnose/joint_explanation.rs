@@ -148,8 +148,8 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
     };
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
-        let of_kind = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
-        CATALOGUE.iter().find(of_kind)
+        let is_zero_row = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
+        CATALOGUE.iter().find(is_zero_row)
     };
     let to_explanation = |row: &Row| Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
@@ -192,23 +192,23 @@ fn explain_wrong_polynomials(
     for list in traces {
         let is_formula_row =
             |explanation: &&Explanation| find(&explanation.key).is_some_and(|row| is_formula_area(row.area));
-        let of_polynomials = list.iter().filter(|explanation| {
+        let polynomial_explanations = list.iter().filter(|explanation| {
             matches!(explanation.topic, ExplanationTopic::Polynomials { .. }) || is_formula_row(explanation)
         });
-        let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
+        let subjects: BTreeSet<Subject> = polynomial_explanations.flat_map(Explanation::subjects).collect();
         let subjects = subjects.into_iter().filter(|subject| !is_unwritten(subject));
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
-    let most = wrong.values().copied().max()?;
+    let max_count = wrong.values().copied().max()?;
     let named_in = |explanation: &Explanation| traces.iter().filter(|list| is_named_in(explanation, list)).count();
     let is_reported = found.iter().any(|explanation| !explanation.subjects().is_empty())
-        || found.first().is_some_and(|first| named_in(first) >= most);
+        || found.first().is_some_and(|first| named_in(first) >= max_count);
     // A fault in only a few traces may follow from another mistake.
-    if is_reported || most * 2 <= traces.len() {
+    if is_reported || max_count * 2 <= traces.len() {
         return None;
     }
     let subjects: Vec<Subject> =
-        wrong.into_iter().filter(|(_, count)| *count == most).map(|(subject, _)| subject).collect();
+        wrong.into_iter().filter(|(_, count)| *count == max_count).map(|(subject, _)| subject).collect();
     let guesses = traces.iter().flatten().filter_map(|explanation| match &explanation.topic {
         ExplanationTopic::Polynomials { subjects: theirs, found: PolynomialEvidence::Guess(guess) }
             if *theirs == subjects =>
@@ -225,7 +225,9 @@ fn explain_wrong_polynomials(
     let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
         // A known formula is tried on every trace, so only few traces may contradict it.
-        Some((named, head)) if most.saturating_sub(named) * if is_known(&head) { 8 } else { 2 } < most => Some(head),
+        Some((named, head)) if max_count.saturating_sub(named) * if is_known(&head) { 8 } else { 2 } < max_count => {
+            Some(head)
+        }
         _ => Some(Explanation::for_wrong_polynomials(subjects, PolynomialEvidence::Nothing)),
     }
 }
@@ -250,11 +252,11 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
         // If a trace does not show a polynomial of a known mistake, that mistake may be the cause of a reported guess.
         let is_guess = matches!(explanation.topic, ExplanationTopic::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::pair_kind);
-        let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
+        let share_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
             Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
             None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
         };
-        let in_one_stage = match (&explanation.topic, &next.topic) {
+        let share_stage = match (&explanation.topic, &next.topic) {
             (ExplanationTopic::Stage(explanation), ExplanationTopic::Stage(next)) => {
                 let are_of_two_kinds =
                     explanation.kind().zip(next.kind()).is_some_and(|(explanation, next)| explanation != next);
@@ -266,10 +268,10 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
             (ExplanationTopic::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
         };
-        let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();
-        let of_vectors = find(&explanation.key).filter(is_of_vector).zip(find(&next.key).filter(is_of_vector));
-        let in_one_vector = of_vectors.is_some_and(|(explanation, next)| explanation.pair_kind() == next.pair_kind());
-        in_one_formula || in_one_stage || in_one_vector
+        let is_vector_row = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();
+        let vector_rows = find(&explanation.key).filter(is_vector_row).zip(find(&next.key).filter(is_vector_row));
+        let share_vector = vector_rows.is_some_and(|(explanation, next)| explanation.pair_kind() == next.pair_kind());
+        share_formula || share_stage || share_vector
     };
     found.iter().any(has_details)
 }
@@ -293,15 +295,18 @@ fn drop_consequences(traces: &mut Vec<OpenTrace>) {
 fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let all = || traces.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
-    let is_of_it = |explanation: &Explanation| explanation.stage() == Some(earliest);
+    let is_in_earliest = |explanation: &Explanation| explanation.stage() == Some(earliest);
     let kind_of = |explanation: &Explanation| {
         if let ExplanationTopic::Stage(fault) = &explanation.topic { fault.kind() } else { None }
     };
     let observed = |row: &Row| {
-        let is_of_kind =
+        let has_row_kind =
             |explanation: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(explanation) == Some(kind));
         let shows = |trace: &&OpenTrace| {
-            trace.symptoms.iter().any(|symptom| is_of_it(&symptom.explanation) && is_of_kind(&symptom.explanation))
+            trace
+                .symptoms
+                .iter()
+                .any(|symptom| is_in_earliest(&symptom.explanation) && has_row_kind(&symptom.explanation))
         };
         traces.iter().filter(shows).count()
     };
@@ -309,7 +314,7 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
-    let has_details = all().any(|explanation| is_of_it(explanation) && !explanation.is_vague());
+    let has_details = all().any(|explanation| is_in_earliest(explanation) && !explanation.is_vague());
     // If pairs are in another order or left out, the polynomials of one pair are compared with those of another.
     let is_misread = |explanation: &Explanation| find(&explanation.key).is_none() && explanation.stage().is_none();
     let has_order = all().any(Explanation::is_about_pairs);

@@ -6,12 +6,12 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns an explanation of the same steps as `one` by the known mistake of `row`.
 pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
-    let of_row = |detail: &Detail| match detail {
+    let adapt = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
         Detail::SearchArea(_) => Detail::SearchArea(row.area),
         other => other.clone(),
     };
-    let details = one.details.iter().map(of_row).collect();
+    let details = one.details.iter().map(adapt).collect();
     Explanation { key: row.id.to_owned(), topic: ExplanationTopic::Mistake, details, same_as, ..one.clone() }
 }
 
@@ -54,8 +54,8 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     // guess that does not depend on the polynomial.
     let words_by_subject = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {
-            let is_of_all = find(guess).is_some() || claim.ends_with('/');
-            if is_of_all { guess } else { claim }
+            let concerns_all = find(guess).is_some() || claim.ends_with('/');
+            if concerns_all { guess } else { claim }
         });
         words.map(str::to_owned).collect::<BTreeSet<String>>()
     });

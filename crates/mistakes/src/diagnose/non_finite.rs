@@ -127,16 +127,16 @@ fn find_stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
     let polynomial = find_non_finite_polynomial(&end.polynomials);
     let state = find_non_finite_value(&end.state);
-    let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
+    let state_stage = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
     match scene.collision {
         Collision::None | Collision::Penalty { .. } => Some((NanStage::Motion, state?)),
         Collision::Simple { .. } => {
-            let of_contact =
+            let contact =
                 end.impulses.iter().find_map(find_non_finite_impulse).map(|value| (NanStage::ContactVectors, value));
-            of_contact.or_else(|| Some((of_state, state?)))
+            contact.or_else(|| Some((state_stage, state?)))
         }
         Collision::ContinuousTime { .. } => find_stage_in_single_pass(scene, end, polynomial)
-            .or_else(|| Some((of_state, find_non_finite_value(&mid.state).or(state)?))),
+            .or_else(|| Some((state_stage, find_non_finite_value(&mid.state).or(state)?))),
         Collision::Hybrid { .. } => {
             let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomial_count()).sum();
             let middle = mid.polynomials.len();
@@ -164,20 +164,21 @@ fn find_stage_in_single_pass(
     polynomial: Option<(usize, f64)>,
 ) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
-    let place =
+    let pair_index =
         |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|candidate| candidate == pair));
-    let contact = end.impulses.iter().find_map(|contact| Some((place(contact), find_non_finite_impulse(contact)?)));
+    let contact =
+        end.impulses.iter().find_map(|contact| Some((pair_index(contact), find_non_finite_impulse(contact)?)));
     let Some((index, value)) = polynomial else { return contact.map(|(_, value)| (NanStage::ContactVectors, value)) };
     let Some((at, pair)) = locate_pair(scene, index) else { return Some((NanStage::Detection(None), value)) };
-    if let Some((Some(place), value)) = contact
-        && place < at
+    if let Some((Some(pair_index), value)) = contact
+        && pair_index < at
     {
         return Some((NanStage::ContactVectors, value));
     }
     // If an earlier contact in the pass has moved one of the bodies, its response has computed the values.
     let own = pair_particles(scene, pair);
     let has_moved = |contact: &LoggedImpulse| {
-        place(contact).is_some_and(|place| place < at)
+        pair_index(contact).is_some_and(|pair_index| pair_index < at)
             && contact.pair().is_some_and(|other| pair_particles(scene, other).iter().any(|body| own.contains(body)))
     };
     let is_moved = end.impulses.iter().any(has_moved);

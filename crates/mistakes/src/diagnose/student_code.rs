@@ -44,10 +44,10 @@ pub(super) fn changed_term(row: &Row) -> Term {
 /// Returns the milestone of a submission that runs on `scenes`, which is the first whose programs know all of them.
 /// Returns `None` if there are no scenes, or if no milestone knows all of them.
 pub fn find_milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
-    let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();
+    let assignments = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();
     let common = scenes
         .into_iter()
-        .map(of_scene)
+        .map(assignments)
         .reduce(|one, other| one.into_iter().filter(|assignment| other.contains(assignment)).collect::<Vec<_>>());
     common?.first().copied()
 }

@@ -93,7 +93,7 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
         let mut proven = scene.explanations.iter().filter(|explanation| explanation.is_proven()).peekable();
         proven.peek().is_some() && proven.all(|explanation| is_named_in(mistake, std::slice::from_ref(explanation)))
     };
-    let of_group = |group: &GroupGrade| {
+    let group_points = |group: &GroupGrade| {
         let is_right = |scene: &SceneGrade| scene.verdict.is_accepted() || is_mended(scene);
         if group.all_or_nothing && !group.scenes.iter().all(is_right) {
             return 0.0;
@@ -102,7 +102,7 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
         group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost).sum()
     };
     // The sum of no numbers is -0.
-    grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
+    grade.groups.iter().filter(|group| !group.extra).map(group_points).sum::<f64>() + 0.0
 }
 
 /// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Several scenes nearly
@@ -138,7 +138,7 @@ pub fn reconcile_explanations(grade: &mut Grade) {
     let likely = if speak_together { find_likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(explanation, _)| explanation).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-        let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted_keys);
-        (scene.corrected_explanations, scene.agreed_count) = (of_scene.explanations, of_scene.agreed_count);
+        let corrected = correct_trace(&scene.result.explanations, &likely, &grade.refuted_keys);
+        (scene.corrected_explanations, scene.agreed_count) = (corrected.explanations, corrected.agreed_count);
     }
 }

@@ -230,10 +230,10 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
         let movable = group.iter().position(|(_, _, particle)| !particle.fixed);
         let Some(movable) = movable.filter(|_| group.len() > 1) else { continue };
         // Each other pair is reported once; two fixed particles at the same position are harmless.
-        for (place, (number, tag, particle)) in group.iter().enumerate() {
+        for (index, (number, tag, particle)) in group.iter().enumerate() {
             let partner = if particle.fixed { movable } else { 0 };
             let (other, _, with) = group[partner];
-            if place > partner && rule.touches(particle.radius + with.radius) {
+            if index > partner && rule.touches(particle.radius + with.radius) {
                 rule.report(tag, report, || format!("particles {other} and {number} start at the same position"));
             }
         }
@@ -257,10 +257,10 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
         let edge_vector = end - start;
         // The position on the edge is computed as in the penalty force, which limits it to the edge.
         let alpha = ((particle.position - start).dot(&edge_vector) / edge_vector.dot(&edge_vector)).clamp(0.0, 1.0);
-        let on_it = (start + alpha * edge_vector) - particle.position == Vec2::zeros();
-        let at_end = particle.position == start || particle.position == end;
+        let is_on_edge = (start + alpha * edge_vector) - particle.position == Vec2::zeros();
+        let is_at_end = particle.position == start || particle.position == end;
         let all_fixed = particle.fixed && fixed(edge.first) && fixed(edge.second);
-        if on_it && !at_end && !all_fixed && rule.touches(particle.radius + edge.radius) {
+        if is_on_edge && !is_at_end && !all_fixed && rule.touches(particle.radius + edge.radius) {
             rule.report(tag, report, || format!("particle {number} starts exactly on edge {edge_number}"));
         }
     }
@@ -273,9 +273,9 @@ fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule
         let (Some(plane), ParsedElement { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
         let (toward, normal) = (plane.point - particle.position, plane.normal);
         let scale = toward.dot(&normal) / normal.dot(&normal);
-        let on_it = scale * normal == Vec2::zeros();
+        let is_on_line = scale * normal == Vec2::zeros();
         let harmless = particle.fixed && !rule.moves_fixed;
-        if on_it && !harmless && rule.touches(particle.radius) {
+        if is_on_line && !harmless && rule.touches(particle.radius) {
             rule.report(tag, report, || format!("particle {number} starts exactly on halfplane {plane_number}"));
         }
     }

@@ -157,9 +157,9 @@ impl Report {
     /// `text`.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
-        let mut place = TextCursor::from_start(text);
+        let mut cursor = TextCursor::from_start(text);
         for problem in &mut self.list {
-            (problem.line, problem.column) = place.advance(text, problem.span.start);
+            (problem.line, problem.column) = cursor.advance(text, problem.span.start);
         }
         (self.list, self.omitted)
     }

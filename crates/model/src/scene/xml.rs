@@ -67,21 +67,21 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
         return None;
     }
     let particles = reading.read_repeated("particle", read_particle);
-    let of_particles = reading.count("particle", "particle", particles.len());
-    let edges = reading.read_repeated("edge", |fields| read_edge(fields, of_particles));
-    let of_edges = reading.count("edge", "edge", edges.len());
+    let particle_count = reading.count("particle", "particle", particles.len());
+    let edges = reading.read_repeated("edge", |fields| read_edge(fields, particle_count));
+    let edge_count = reading.count("edge", "edge", edges.len());
     let half_planes = reading.read_repeated("halfplane", |fields| {
         let (point, normal) = (fields.vector("px", "py"), fields.vector("nx", "ny"));
         Some(HalfPlane { point: point?, normal: normal? })
     });
-    let of_half_planes = reading.count("halfplane", "half-plane", half_planes.len());
+    let half_plane_count = reading.count("halfplane", "half-plane", half_planes.len());
     Some(SceneParts {
-        forces: reading.read_forces(of_particles, of_edges),
+        forces: reading.read_forces(particle_count, edge_count),
         integrator: reading.require("integrator", "type=\"...\" dt=\"...\"", read_integrator),
         duration: reading.require("duration", "time=\"...\"", read_duration),
         collision: reading.read_collision_handling(),
         description: reading.read_optional("description", |fields| fields.text("text", "a text")),
-        display: reading.read_display(of_particles, of_edges, of_half_planes),
+        display: reading.read_display(particle_count, edge_count, half_plane_count),
         particles,
         edges,
         half_planes,

@@ -5,12 +5,12 @@ use nalgebra::{DMatrix, Matrix2};
 /// the other.
 pub(crate) fn add_coupling(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
-        let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
-        place += block;
+        let mut target = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
+        target += block;
     }
     for [row, column] in [[a, b], [b, a]] {
-        let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
-        place -= block;
+        let mut target = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
+        target -= block;
     }
 }
 
@@ -18,11 +18,11 @@ pub(crate) fn add_coupling(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block:
 /// sign.
 pub(crate) fn subtract_coupling(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
-        let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
-        place -= block;
+        let mut target = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
+        target -= block;
     }
     for [row, column] in [[a, b], [b, a]] {
-        let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
-        place += block;
+        let mut target = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
+        target += block;
     }
 }

@@ -117,10 +117,10 @@ impl Pairs {
 
     /// Returns the number of pairs of each kind.
     pub fn counts(&self) -> PairKindMap<usize> {
-        let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
+        let end_pairs: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
         PairKindMap::from_fn(|kind| match kind {
             PairKind::ParticleParticle => self.particles * self.particles.saturating_sub(1) / 2,
-            PairKind::ParticleEdge => self.particles * self.edges.len() - at_ends,
+            PairKind::ParticleEdge => self.particles * self.edges.len() - end_pairs,
             PairKind::ParticleHalfPlane => self.particles * self.half_planes,
         })
     }
@@ -142,10 +142,10 @@ impl Pairs {
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));
         for particle in 0..self.particles {
             let edges = self.edges.iter().filter(|&&ends| !is_end(ends, particle)).count();
-            let of_particle = PairKind::ParticleParticle.polynomial_count() * (self.particles - particle - 1)
+            let particle_polynomials = PairKind::ParticleParticle.polynomial_count() * (self.particles - particle - 1)
                 + PairKind::ParticleEdge.polynomial_count() * edges
                 + PairKind::ParticleHalfPlane.polynomial_count() * self.half_planes;
-            if let Some(more) = rest.checked_sub(of_particle) {
+            if let Some(more) = rest.checked_sub(particle_polynomials) {
                 rest = more;
                 continue;
             }

@@ -87,8 +87,8 @@ impl PolynomialBytes {
         #[expect(clippy::cast_possible_truncation, reason = "at most six")]
         let size = coefficients.len() as u32;
         polynomial[..4].copy_from_slice(&size.to_le_bytes());
-        for (place, coefficient) in polynomial[4..].chunks_exact_mut(8).zip(coefficients) {
-            place.copy_from_slice(&coefficient.to_le_bytes());
+        for (bytes, coefficient) in polynomial[4..].chunks_exact_mut(8).zip(coefficients) {
+            bytes.copy_from_slice(&coefficient.to_le_bytes());
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
         self.reserve(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
@@ -121,9 +121,9 @@ impl PolynomialBytes {
     #[cold]
     fn grow(&mut self, bytes: usize) {
         let size = self.bytes.len();
-        let most = (self.used_bytes + bytes).max(size + size.min(MAX_GROWTH));
-        self.bytes.reserve_exact(most - size);
-        self.bytes.resize(most, 0);
+        let new_size = (self.used_bytes + bytes).max(size + size.min(MAX_GROWTH));
+        self.bytes.reserve_exact(new_size - size);
+        self.bytes.resize(new_size, 0);
     }
 }
 

@@ -131,9 +131,9 @@ impl fmt::Display for EventCounts {
             self.simple_passes, self.continuous_time_passes, self.impulse_passes, self.geometric_passes
         )?;
         for (name, numbers) in [("calls", self.calls), ("hits", self.hits)] {
-            let of_kinds: Vec<String> =
+            let counts: Vec<String> =
                 numbers.iter().map(|(kind, number)| format!("{number} {}", kind.name())).collect();
-            writeln!(f, "{name:<13} {}", of_kinds.join(", "))?;
+            writeln!(f, "{name:<13} {}", counts.join(", "))?;
         }
         writeln!(f, "polynomials   {}", self.polynomials)?;
         writeln!(f, "impulses      {}", self.impulses)?;

@@ -109,17 +109,17 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
             let more = usize::try_from(max_count - done).unwrap_or(usize::MAX).min(RESERVED_POLYNOMIALS);
             coefficients.resize(used + more * MAX_COEFFICIENTS, 0.0);
         }
-        let places = &mut coefficients[used..used + MAX_COEFFICIENTS];
+        let slots = &mut coefficients[used..used + MAX_COEFFICIENTS];
         let numbers = rest.as_chunks::<8>().0;
         match numbers.first_chunk::<MAX_COEFFICIENTS>() {
-            Some(six) => places.copy_from_slice(&six.map(f64::from_le_bytes)),
-            None => places.iter_mut().zip(numbers).for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes)),
+            Some(six) => slots.copy_from_slice(&six.map(f64::from_le_bytes)),
+            None => slots.iter_mut().zip(numbers).for_each(|(slot, bytes)| *slot = f64::from_le_bytes(*bytes)),
         }
         let mut kept = size;
-        if TRIM && size > 0 && places[0].abs() < MIN_LEADING_COEFFICIENT {
-            let list = trim(&places[..size]);
+        if TRIM && size > 0 && slots[0].abs() < MIN_LEADING_COEFFICIENT {
+            let list = trim(&slots[..size]);
             kept = list.len();
-            places.copy_within(size - kept..size, 0);
+            slots.copy_within(size - kept..size, 0);
             trimmed = true;
         }
         used += kept;

@@ -13,8 +13,8 @@ pub(crate) const IMPULSE_BYTES: usize = 36;
 pub(crate) fn append_numbers(out: &mut Vec<u8>, values: &[f64]) {
     let start = out.len();
     out.resize(start + 8 * values.len(), 0);
-    for (place, value) in out[start..].chunks_exact_mut(8).zip(values) {
-        place.copy_from_slice(&value.to_le_bytes());
+    for (bytes, value) in out[start..].chunks_exact_mut(8).zip(values) {
+        bytes.copy_from_slice(&value.to_le_bytes());
     }
 }
 

@@ -42,10 +42,10 @@ const MAX_KEPT_COEFFICIENTS: usize = 4096;
 /// polynomials of all possible detection passes of a step (collisions.md 4 and 5), within bounds.
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
-    let of_particles = particles.saturating_mul(particles.saturating_sub(1));
-    let of_edges = particles.saturating_mul(4 * scene.edges.len());
-    let of_half_planes = particles.saturating_mul(2 * scene.half_planes.len());
-    let pass = of_particles.saturating_add(of_edges).saturating_add(of_half_planes);
+    let particle_polynomials = particles.saturating_mul(particles.saturating_sub(1));
+    let edge_polynomials = particles.saturating_mul(4 * scene.edges.len());
+    let half_plane_polynomials = particles.saturating_mul(2 * scene.half_planes.len());
+    let pass = particle_polynomials.saturating_add(edge_polynomials).saturating_add(half_plane_polynomials);
     pass.saturating_mul(max_passes(scene))
         .saturating_mul(MAX_POLYNOMIAL_BYTES)
         .clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)

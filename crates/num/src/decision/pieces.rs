@@ -198,16 +198,16 @@ enum Sign {
 impl Sign {
     fn from_control(control: &BernsteinForm) -> Self {
         let values = &control.values[..control.length];
-        let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (mut minimum, mut maximum) = (f64::INFINITY, f64::NEG_INFINITY);
         for &value in values {
-            least = least.min(value);
-            most = most.max(value);
+            minimum = minimum.min(value);
+            maximum = maximum.max(value);
         }
-        if most < -control.error {
-            Self::Negative(-most - control.error)
-        } else if least > control.error {
+        if maximum < -control.error {
+            Self::Negative(-maximum - control.error)
+        } else if minimum > control.error {
             Self::Positive
-        } else if -least > NOISE_FACTOR * control.error || most > NOISE_FACTOR * control.error {
+        } else if -minimum > NOISE_FACTOR * control.error || maximum > NOISE_FACTOR * control.error {
             Self::Mixed
         } else {
             Self::Noise
@@ -220,7 +220,7 @@ impl Sign {
 fn split(control: &BernsteinForm) -> (BernsteinForm, BernsteinForm) {
     let (mut left, mut right) = (*control, *control);
     let length = control.length;
-    let size = control.values[..length].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+    let size = control.values[..length].iter().fold(0.0_f64, |maximum, value| maximum.max(value.abs()));
     for step in 1..length {
         for i in 0..length - step {
             right.values[i] = (right.values[i] + right.values[i + 1]) * 0.5;

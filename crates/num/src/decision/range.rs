@@ -124,8 +124,8 @@ impl Problem {
     pub(crate) fn coefficients_highest_first(&self) -> [([f64; MAX_COEFFICIENTS], usize); MAX_POLYNOMIALS] {
         self.list.map(|polynomial| {
             let mut list = [0.0; MAX_COEFFICIENTS];
-            for (place, value) in list.iter_mut().zip(polynomial.coefficients[..polynomial.length].iter().rev()) {
-                *place = *value;
+            for (entry, value) in list.iter_mut().zip(polynomial.coefficients[..polynomial.length].iter().rev()) {
+                *entry = *value;
             }
             (list, polynomial.length)
         })
@@ -207,7 +207,8 @@ impl ExactPolynomial {
             return None;
         }
         let control = self.compute_bernstein();
-        let greatest = control.values[..control.length].iter().fold(f64::NEG_INFINITY, |most, &value| most.max(value));
+        let greatest =
+            control.values[..control.length].iter().fold(f64::NEG_INFINITY, |maximum, &value| maximum.max(value));
         let distance = -greatest - control.error;
         (distance > 0.0).then(|| slack(distance, self.bound))
     }

@@ -48,10 +48,10 @@ pub fn ln(x: f64) -> f64 {
     if x < f64::MIN_POSITIVE {
         bits = (x * f64::from_bits((1023 + 52) << 52)).to_bits().wrapping_sub(52 << 52);
     }
-    let place = bits.wrapping_sub(TABLE_START_BITS);
-    let row = 2 * (place >> 45 & 127) as usize;
-    let exponent = f64::from((place.cast_signed() >> 52) as i32);
-    let z = f64::from_bits(bits.wrapping_sub(place & 0xfff << 52));
+    let offset = bits.wrapping_sub(TABLE_START_BITS);
+    let row = 2 * (offset >> 45 & 127) as usize;
+    let exponent = f64::from((offset.cast_signed() >> 52) as i32);
+    let z = f64::from_bits(bits.wrapping_sub(offset & 0xfff << 52));
     let [reciprocal, logarithm] = [LOGARITHM_TABLE[row], LOGARITHM_TABLE[row + 1]].map(f64::from_bits);
     let r = multiply_add(z, reciprocal, -1.0);
     let high = multiply_add(exponent, LN_2[0], logarithm);

@@ -51,11 +51,11 @@ pub(super) fn run<const N: usize>(
         }
         previous_size = size;
         *k = next_k::<N>(k, &q, s, value);
-        let mut at_s = k[0];
+        let mut value_at_s = k[0];
         for &kappa in &k[1..N] {
-            at_s = at_s * s + kappa;
+            value_at_s = value_at_s * s + kappa;
         }
-        t = if at_s.abs() > ((k[N - 1] * 10.0) * UNIT_ERROR).abs() { -value / at_s } else { 0.0 };
+        t = if value_at_s.abs() > ((k[N - 1] * 10.0) * UNIT_ERROR).abs() { -value / value_at_s } else { 0.0 };
         s += t;
     }
 }

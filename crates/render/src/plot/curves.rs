@@ -80,9 +80,14 @@ impl PolynomialPlot<'_> {
         }
         if let Some(time) = self.impact.filter(|time| (0.0..=1.0).contains(time)) {
             sheet.draw_line(Ink::Mark, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
-            let (place, anchor) =
+            let (label_x, anchor) =
                 if time < 0.6 { (x(time) + 5.0, Anchor::Start) } else { (x(time) - 5.0, Anchor::End) };
-            sheet.draw_text([place, TOP + 4.0], anchor, TextColor::Mark, &format!("impact at {}", format_short(time)));
+            sheet.draw_text(
+                [label_x, TOP + 4.0],
+                anchor,
+                TextColor::Mark,
+                &format!("impact at {}", format_short(time)),
+            );
         }
         sheet.finish()
     }
@@ -113,8 +118,9 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
     let slopes = derivative(curve.coefficients);
-    let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
-    let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
+    let maximum =
+        values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |maximum, value| maximum.max(value.abs()));
+    let y = |value: f64| if maximum > 0.0 { MIDDLE - value / maximum * (MIDDLE - TOP - 8.0) } else { MIDDLE };
     // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and with an error below a
     // thousandth of a pixel for a quintic.
     let mut path: Vec<[f64; 2]> = Vec::new();

@@ -26,10 +26,11 @@ impl PassPlot<'_> {
         sheet.draw_text([LEFT, 18.0], Anchor::Start, TextColor::Plain, self.title);
         let steps = self.expected.len().max(self.actual.len());
         let columns = Columns::for_steps(steps);
-        let most = self.expected.iter().copied().chain(self.actual.iter().copied().flatten()).max().unwrap_or(0).max(1);
-        let y = |count: u32| BOTTOM - f64::from(count) / f64::from(most) * (BOTTOM - TOP);
-        let every = (most / 4).max(1);
-        for count in (0..=most).step_by(every as usize) {
+        let max_count =
+            self.expected.iter().copied().chain(self.actual.iter().copied().flatten()).max().unwrap_or(0).max(1);
+        let y = |count: u32| BOTTOM - f64::from(count) / f64::from(max_count) * (BOTTOM - TOP);
+        let every = (max_count / 4).max(1);
+        for count in (0..=max_count).step_by(every as usize) {
             sheet.draw_rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
             sheet.draw_text([LEFT - 8.0, y(count) + 4.0], Anchor::End, TextColor::Faint, &count.to_string());
         }
@@ -42,15 +43,15 @@ impl PassPlot<'_> {
             }
             let x = columns.x(range.start);
             // A step with a difference represents its column.
-            let place = range.clone().find(|&place| self.has_difference(place));
-            if place.is_some() {
+            let index = range.clone().find(|&index| self.has_difference(index));
+            if index.is_some() {
                 differing.push(x);
             }
-            let place = place.unwrap_or(range.start);
-            if let Some(&count) = self.expected.get(place) {
+            let index = index.unwrap_or(range.start);
+            if let Some(&count) = self.expected.get(index) {
                 expected.push([x, y(count)]);
             }
-            if let Some(Some(count)) = self.actual.get(place) {
+            if let Some(Some(count)) = self.actual.get(index) {
                 actual.push([x, y(*count)]);
             }
         }
@@ -65,8 +66,8 @@ impl PassPlot<'_> {
         sheet.finish()
     }
 
-    fn has_difference(&self, place: usize) -> bool {
-        match (self.expected.get(place), self.actual.get(place)) {
+    fn has_difference(&self, index: usize) -> bool {
+        match (self.expected.get(index), self.actual.get(index)) {
             (Some(expected), Some(actual)) => Some(*expected) != *actual,
             _ => false,
         }
@@ -75,11 +76,11 @@ impl PassPlot<'_> {
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
-        let differing = (0..compared).filter(|&place| self.has_difference(place)).count();
-        let first = (0..compared).find(|&place| self.has_difference(place));
-        let first = first.map_or_else(String::new, |place| {
-            let actual = self.actual[place].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
-            format!("; the first is step {} with {actual}, expected {}", place + 1, self.expected[place])
+        let differing = (0..compared).filter(|&index| self.has_difference(index)).count();
+        let first = (0..compared).find(|&index| self.has_difference(index));
+        let first = first.map_or_else(String::new, |index| {
+            let actual = self.actual[index].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
+            format!("; the first is step {} with {actual}, expected {}", index + 1, self.expected[index])
         });
         format!("{differing} of {compared} steps have a different number of detection passes{first}")
     }

@@ -43,13 +43,18 @@ impl ResidualPlot<'_> {
         scale.draw(&mut sheet);
         let columns = Columns::for_steps(steps);
         sheet.draw_steps(&columns, BOTTOM + LANE_HEIGHT + 16.0, HEIGHT - 6.0);
-        if let Some((step, why)) = self.mark
+        if let Some((step, label)) = self.mark
             && (1..=steps).contains(&(step as usize))
         {
             let x = columns.x(step as usize - 1);
             sheet.draw_line(Ink::Mark, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
-            let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
-            sheet.draw_text([place, TOP - LANE_HEIGHT + 8.0], anchor, TextColor::Mark, &format!("step {step}: {why}"));
+            let (label_x, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
+            sheet.draw_text(
+                [label_x, TOP - LANE_HEIGHT + 8.0],
+                anchor,
+                TextColor::Mark,
+                &format!("step {step}: {label}"),
+            );
         }
         let y = scale.y(self.tolerance);
         sheet.draw_line(Ink::Mark, 1.5, &[[LEFT, y], [RIGHT, y]]);
@@ -60,8 +65,8 @@ impl ResidualPlot<'_> {
             let points: Vec<[f64; 2]> = (0..columns.columns)
                 .filter_map(|column| {
                     let range = columns.range(column);
-                    let (place, value) = find_worst(series.values, range)?;
-                    Some([columns.x(place), scale.y(value)])
+                    let (index, value) = find_worst(series.values, range)?;
+                    Some([columns.x(index), scale.y(value)])
                 })
                 .collect();
             sheet.draw_series(ink, &points, number, 4);
@@ -74,13 +79,13 @@ impl ResidualPlot<'_> {
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let describe_series = |Series { name, values }: &Series<'_>| {
-            let (place, value) = find_worst(values, 0..values.len())?;
+            let (index, value) = find_worst(values, 0..values.len())?;
             // A NaN is not below the tolerance.
             let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
             let (largest, steps, tolerance) = (format_short(value), values.len(), format_short(self.tolerance));
             Some(format!(
                 "{name}: largest {largest} in step {}, {above} of {steps} steps not below the tolerance {tolerance}",
-                place + 1
+                index + 1
             ))
         };
         self.series.iter().filter_map(describe_series).collect::<Vec<_>>().join("; ")
@@ -90,9 +95,9 @@ impl ResidualPlot<'_> {
 /// Returns the worst value in a range, and its index. A NaN is worse than any number.
 fn find_worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
-    let places = range.start.min(values.len())..range.end.min(values.len());
-    places
-        .map(|place| (place, values[place]))
+    let indices = range.start.min(values.len())..range.end.min(values.len());
+    indices
+        .map(|index| (index, values[index]))
         .reduce(|worst, next| if rank(next.1) > rank(worst.1) { next } else { worst })
 }
 
@@ -106,9 +111,9 @@ impl Scale {
     fn from_plot(plot: &ResidualPlot<'_>) -> Self {
         let values = plot.series.iter().flat_map(|series| series.values).copied().chain([plot.tolerance]);
         let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
-        let (least, most) =
-            shown.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
-        let (low, high) = if most > 0.0 { decade_range(least, most) } else { (-16, 0) };
+        let (minimum, maximum) =
+            shown.fold((f64::INFINITY, 0.0_f64), |(minimum, maximum), value| (minimum.min(value), maximum.max(value)));
+        let (low, high) = if maximum > 0.0 { decade_range(minimum, maximum) } else { (-16, 0) };
         Self { low, high }
     }
 

@@ -291,17 +291,17 @@ impl Columns {
     /// Returns the indices of the steps in a column.
     pub fn range(&self, column: usize) -> std::ops::Range<usize> {
         let at = |column: usize| {
-            let place = column as u128 * self.steps as u128 / self.columns as u128;
-            usize::try_from(place).unwrap_or(self.steps)
+            let index = column as u128 * self.steps as u128 / self.columns as u128;
+            usize::try_from(index).unwrap_or(self.steps)
         };
         at(column)..at(column + 1)
     }
 
     /// Returns the horizontal position of a step, given its index.
     #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
-    pub fn x(&self, place: usize) -> f64 {
+    pub fn x(&self, index: usize) -> f64 {
         let steps = (self.steps.max(2) - 1) as f64;
-        LEFT + (RIGHT - LEFT) * place as f64 / steps
+        LEFT + (RIGHT - LEFT) * index as f64 / steps
     }
 }
 

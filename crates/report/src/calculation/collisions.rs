@@ -105,11 +105,11 @@ impl Observer for CollisionWalk<'_> {
             PairKind::ParticleHalfPlane => vec![(first, 1.0)],
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[second];
-                let place = |particle: usize| match is_simple {
+                let position = |particle: usize| match is_simple {
                     true => vector_at(&self.observed_state.positions, particle),
                     false => vector_at(&self.start, particle) + time * self.shift(particle),
                 };
-                let [y1, y2, y3] = [first, edge.first, edge.second].map(place);
+                let [y1, y2, y3] = [first, edge.first, edge.second].map(position);
                 let alpha = ((y1 - y2).dot(&(y3 - y2)) / (y3 - y2).dot(&(y3 - y2))).clamp(0.0, 1.0);
                 text += &format!("  alpha = {}: the nearest point of the edge at that time\n", format_short(alpha));
                 vec![(first, 1.0), (edge.first, alpha - 1.0), (edge.second, -alpha)]

@@ -105,11 +105,11 @@ impl Check<'_> {
         let mut text = String::new();
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.is_accepted() {
-            let place = self.outcome.stop_by(self.book()).map(|stop| describe_stop(&stop, self.outcome));
+            let stop = self.outcome.stop_by(self.book()).map(|stop| describe_stop(&stop, self.outcome));
             let first = first_finding::find_first(self).map(|first| first.to_string());
             let likely = explain::render_sentence(self.explanations).filter(|_| !first_finding::is_other_scene(self));
             let words: Vec<String> =
-                [Some(text::render_headline(self)), place, first, likely].into_iter().flatten().collect();
+                [Some(text::render_headline(self)), stop, first, likely].into_iter().flatten().collect();
             text += &render_annotation("error", &title, &words.join("; "));
         }
         if let Some(cause) = find_cause(self.outcome) {

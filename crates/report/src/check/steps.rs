@@ -88,9 +88,9 @@ impl Steps {
             return;
         }
         // Record 0 is the initial state, not a step.
-        if let (Err(place), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < MAX_LISTED)
+        if let (Err(index), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < MAX_LISTED)
         {
-            self.numbers.insert(place, step);
+            self.numbers.insert(index, step);
         }
         let is_listed = match shown {
             StepChoice::None => false,
@@ -100,18 +100,18 @@ impl Steps {
         if !is_listed {
             return;
         }
-        let place = match self.kept_steps.binary_search_by_key(&step, |kept| kept.number) {
-            Ok(place) => place,
+        let index = match self.kept_steps.binary_search_by_key(&step, |kept| kept.number) {
+            Ok(index) => index,
             Err(_) if self.kept_steps.len() >= MAX_LISTED => return,
-            Err(place) => {
+            Err(index) => {
                 self.kept_steps.insert(
-                    place,
+                    index,
                     Step { number: step, first_findings: Vec::new(), further_counts: FindingCounts::default() },
                 );
-                place
+                index
             }
         };
-        let kept = &mut self.kept_steps[place];
+        let kept = &mut self.kept_steps[index];
         for first in findings.first_findings {
             if !kept.first_findings.iter().any(|known| known.kind() == first.kind()) {
                 kept.first_findings.push(*first);

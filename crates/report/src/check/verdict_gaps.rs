@@ -23,10 +23,10 @@ pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
 }
 
 /// Returns the message about a trace that could not be read to its end, and therefore has no verdict.
-pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
+pub fn describe_unread(outcome: &Outcome, trace: &str, error: &str) -> String {
     let place = match &outcome.stop {
         Some(Stop::Trace { cause: ReadFailure::Io, offset, .. }) => format!(" at byte {offset}"),
         _ => String::new(),
     };
-    format!("cannot read the trace {trace}{place}: {why}")
+    format!("cannot read the trace {trace}{place}: {error}")
 }

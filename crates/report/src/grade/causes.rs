@@ -15,18 +15,18 @@ pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
-    for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
-        found.entry((scene.verdict, describe_cause(scene))).or_insert((place, Vec::new())).1.push(scene);
+    for (index, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
+        found.entry((scene.verdict, describe_cause(scene))).or_insert((index, Vec::new())).1.push(scene);
     }
     let mut causes: Vec<_> = found.into_values().collect();
-    causes.sort_by_key(|(place, scenes)| {
+    causes.sort_by_key(|(index, scenes)| {
         let first = scenes[0];
         let is_right = first.verdict.is_accepted();
         let is_left_out = matches!(first.reason, Reason::Skipped(_));
-        (is_right, is_left_out, rank(&likely, &first.corrected_explanations), Reverse(scenes.len()), *place)
+        (is_right, is_left_out, rank(&likely, &first.corrected_explanations), Reverse(scenes.len()), *index)
     });
     for (_, scenes) in &mut causes {
-        let best = (0..scenes.len()).min_by_key(|&place| clarity_rank(scenes[place])).unwrap_or(0);
+        let best = (0..scenes.len()).min_by_key(|&index| clarity_rank(scenes[index])).unwrap_or(0);
         scenes[..=best].rotate_right(1);
     }
     causes.into_iter().map(|(_, scenes)| scenes).collect()

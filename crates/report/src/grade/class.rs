@@ -126,10 +126,11 @@ fn render_head(grades: &[Grade]) -> String {
     let all = format_count(figures.submissions as u64, "submission");
     let mut text = format!("{all}, {} ran, {} accepted", figures.run_submissions, figures.accepted);
     if let Some(reached) = figures.points {
-        let ([mean, middle, lowest, highest], most) = (reached.map(format_points), format_points(figures.max_points));
+        let ([mean, middle, lowest, highest], max_points) =
+            (reached.map(format_points), format_points(figures.max_points));
         let _ = write!(
             text,
-            "; of those that ran mean {mean}, median {middle}, from {lowest} to {highest} of {most} points"
+            "; of those that ran mean {mean}, median {middle}, from {lowest} to {highest} of {max_points} points"
         );
     }
     if figures.without_points > 0 {

@@ -294,8 +294,8 @@ fn strip_entry(entry: &SkippedEntry) -> SkippedEntry {
 pub fn render_lines(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let skipped_entries = skipped_entries.iter().map(|entry| {
-        let SkippedEntry { name, reason: why } = strip_entry(entry);
-        let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
+        let SkippedEntry { name, reason } = strip_entry(entry);
+        let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": reason });
         serde_json::to_string(&line)
     });
     grades.chain(skipped_entries).map(|line| line.unwrap_or_default() + "\n").collect()

@@ -132,9 +132,9 @@ pub(crate) fn failing_grade() -> Grade {
 pub(crate) fn unusable_grade() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
     let found = FolderContents::Others { names, more: 0, elsewhere: None };
-    let why = Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found });
+    let reason = Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found });
     let scenes = |names: &[&str]| {
-        let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why.clone());
+        let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, reason.clone());
         names.iter().map(result).collect::<Vec<_>>()
     };
     grade(
@@ -163,8 +163,8 @@ pub(crate) fn endless_grade() -> Grade {
     let mut stopped = scene("Detection/a", Verdict::TimeLimit, "it ran for 5 s");
     stopped.ended = Some(RunEnd::CpuLimit);
     let left_out = |name| {
-        let why = NotRunReason::Limits { scenes: 1, verdict: Verdict::TimeLimit };
-        SceneResult::without_run(name, 100, Verdict::TimeLimit, Reason::Skipped(why))
+        let reason = NotRunReason::Limits { scenes: 1, verdict: Verdict::TimeLimit };
+        SceneResult::without_run(name, 100, Verdict::TimeLimit, Reason::Skipped(reason))
     };
     let scenes = vec![stopped, left_out("Detection/b"), left_out("Detection/c")];
     grade("eve", vec![group("Detection", Visibility::Visible, scenes)])

@@ -6,22 +6,22 @@ use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource}
 /// Describes a group's points for speed, and how they were computed.
 pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
-    let of_points = format!("of {} points for speed", format_points(marking.points));
+    let max_points = format!("of {} points for speed", format_points(marking.points));
     let reached = reached.map_or_else(|| "none yet".to_owned(), format_points);
     match source {
-        SpeedSource::Measured(measured) => format!("{reached} {of_points}: {}", describe_ratio(marking, measured)),
+        SpeedSource::Measured(measured) => format!("{reached} {max_points}: {}", describe_ratio(marking, measured)),
         SpeedSource::NotAccepted => {
-            format!("{reached} {of_points}: counted only if all scenes of the group are accepted")
+            format!("{reached} {max_points}: counted only if all scenes of the group are accepted")
         }
         SpeedSource::Failed { scene, verdict } => {
             format!(
-                "{reached} {of_points}: a timed run of {scene} had a different verdict ({verdict}) than the graded run"
+                "{reached} {max_points}: a timed run of {scene} had a different verdict ({verdict}) than the graded run"
             )
         }
         SpeedSource::Unmeasured => {
-            format!("{reached} {of_points}: the time could not be measured, which is not the submission's fault")
+            format!("{reached} {max_points}: the time could not be measured, which is not the submission's fault")
         }
-        SpeedSource::Withheld => format!("{reached} {of_points}"),
+        SpeedSource::Withheld => format!("{reached} {max_points}"),
     }
 }
 

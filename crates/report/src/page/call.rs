@@ -188,9 +188,9 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
 /// Returns all coefficients side by side. Those that differ after division by the common factor are marked.
 fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     let mut rows = Vec::new();
-    for (place, curve) in study.curves.iter().enumerate() {
+    for (index, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
-        let own = logged.get(place).map_or(&[][..], Vec::as_slice);
+        let own = logged.get(index).map_or(&[][..], Vec::as_slice);
         let (marks, factor) = (mark_differences(expected, own), find_factor(expected, own));
         for power in (0..expected.len().max(own.len()).min(12)).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);

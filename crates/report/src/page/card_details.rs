@@ -59,8 +59,8 @@ pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clo
 
 /// Describes which cards the page does not contain completely.
 pub(super) fn describe_omitted<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[CardDetail]) -> String {
-    let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
-    let of: Vec<CardDetail> = with_motion.map(|(_, room)| *room).collect();
+    let moving_cards = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
+    let of: Vec<CardDetail> = moving_cards.map(|(_, room)| *room).collect();
     let without = of.iter().filter(|room| matches!(room, CardDetail::Words | CardDetail::Pictures)).count();
     let rounded = of.iter().filter(|room| **room == CardDetail::Rounded).count();
     let scenes = |count: usize| if count == 1 { "one scene has".to_owned() } else { format!("{count} scenes have") };

@@ -110,7 +110,7 @@ impl ClassContent<'_> {
     /// Returns the numbers of a submission's mistakes, in the form that the filter reads.
     fn mistake_numbers(&self, number: usize) -> String {
         let mistakes = self.mistakes.iter().enumerate().filter(|(_, mistake)| mistake.members.contains(&number));
-        mistakes.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
+        mistakes.map(|(mistake, _)| format!("m{mistake}")).collect::<Vec<_>>().join(" ")
     }
 
     /// Returns the mistakes that several submissions make, the most frequent first. Groups of submissions that no

@@ -90,7 +90,7 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
 }
 
 fn inspected_step(inspected: &InspectedStep, evidence: &Evidence) -> Value {
-    let step = (inspected.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
+    let step = (inspected.step as usize).checked_sub(1).and_then(|index| evidence.steps.get(index));
     json!({
         "step": inspected.step,
         "mid": inspected.expected_mid.as_ref().map(state_data),

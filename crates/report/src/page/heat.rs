@@ -13,12 +13,12 @@ pub(super) fn render_cells(letters: &str) -> String {
     );
     for kind in ["w", "e", "n"] {
         let mut path = String::new();
-        let mut place = 0;
+        let mut index = 0;
         for run in scenes.as_bytes().chunk_by(|one, other| one == other) {
             if run[0] == kind.as_bytes()[0] {
-                let _ = write!(path, "M{place} .5h{}", run.len());
+                let _ = write!(path, "M{index} .5h{}", run.len());
             }
-            place += run.len();
+            index += run.len();
         }
         draw_scenes(&mut svg, kind, &path);
     }

@@ -141,9 +141,9 @@ pub fn run_selected(
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(attack) = attacks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let place =
+                    let setup =
                         TestSetup { backend, compiler, sources: &sources, programs: &programs, folder: &folder };
-                    let state = place.try_attack(attack).unwrap_or_else(|why| why);
+                    let state = setup.try_attack(attack).unwrap_or_else(|state| state);
                     let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), state };
                     let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                     (done.1)(&promise);

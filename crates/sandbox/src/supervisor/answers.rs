@@ -107,12 +107,12 @@ impl SharedWait {
 /// Returns the time until which the thread waits. In the call it is relative to now (`FUTEX_WAIT`), or a time of a
 /// clock (`FUTEX_WAIT_BITSET`).
 fn apply_limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
-    let [_, operation, _, place, ..] = announced.arguments;
-    if place == 0 {
+    let [_, operation, _, timeout_address, ..] = announced.arguments;
+    if timeout_address == 0 {
         return Ok(None);
     }
     let mut bytes = [0; 16];
-    memory.read_exact_at(&mut bytes, place).map_err(|_| libc::EFAULT)?;
+    memory.read_exact_at(&mut bytes, timeout_address).map_err(|_| libc::EFAULT)?;
     let [seconds, nanoseconds] = [0, 8].map(|at| i64::from_ne_bytes(std::array::from_fn(|index| bytes[at + index])));
     let (Ok(seconds), Ok(nanoseconds @ 0..1_000_000_000)) = (u64::try_from(seconds), u32::try_from(nanoseconds)) else {
         return Err(libc::EINVAL);

@@ -91,36 +91,36 @@ impl AllowedPlaces {
         let execute = read | AccessFs::Execute;
         let own: Vec<PathBuf> = order.own_files.iter().map(wire::to_path).collect();
         let own = own.as_slice();
-        let mut places = Self(Vec::new());
+        let mut allowed = Self(Vec::new());
         for path in MACHINE_FILES {
-            places.add(Path::new(path), read);
+            allowed.add(Path::new(path), read);
         }
         // The kernel must be able to execute the loader. The filter prevents all other executions.
         let libraries: BTreeSet<PathBuf> =
             LIBRARY_FOLDERS.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
         for folder in &libraries {
-            places.add_around(folder, execute, own);
+            allowed.add_around(folder, execute, own);
         }
         for path in DEVICE_FILES {
             // If /dev/zero is mapped and shared, bytes that are written to it would be memory that no counter shows.
             let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
-            places.add(Path::new(path), access | AccessFs::ReadFile);
+            allowed.add(Path::new(path), access | AccessFs::ReadFile);
         }
         for raw in &order.readable {
-            places.add_around(&wire::to_path(raw), read, own);
+            allowed.add_around(&wire::to_path(raw), read, own);
         }
         for raw in order.executable.iter().chain([&order.program]) {
-            places.add(&wire::to_path(raw), execute);
+            allowed.add(&wire::to_path(raw), execute);
         }
         if order.allows_tools {
             for path in TOOL_FOLDERS {
-                places.add_around(Path::new(path), execute, own);
+                allowed.add_around(Path::new(path), execute, own);
             }
             for path in SETTINGS_FILES {
-                places.add(Path::new(path), read);
+                allowed.add(Path::new(path), read);
             }
         }
-        places
+        allowed
     }
 
     /// Moves the files to descriptor numbers that no program may use, so that they do not count for the limit of a

@@ -179,21 +179,23 @@ fn add_processes(order: &RunOrder) -> Result<(), Failure> {
 /// files are visible. Otherwise the program could name `/proc/self/exe`, which is the grader at first, as its loader.
 pub(super) fn hide_other_processes(order: &RunOrder) -> Result<(), Failure> {
     let own = std::process::id().to_string();
-    let place = Path::new("/proc").join(&own);
+    let process_folder = Path::new("/proc").join(&own);
     let leave = || -> io::Result<()> {
         mounts::unshare(libc::CLONE_NEWNS)?;
         let copy = |path: PathBuf| Ok((mounts::copy_mounts(&c_string(&path)?)?, path));
         let parts: Vec<(OwnedFd, PathBuf)> = match order.layers.landlock {
-            true => vec![copy(place.clone())?],
-            false => file_rules::visible_entry_parts().map(|name| copy(place.join(name))).collect::<io::Result<_>>()?,
+            true => vec![copy(process_folder.clone())?],
+            false => file_rules::visible_entry_parts()
+                .map(|name| copy(process_folder.join(name)))
+                .collect::<io::Result<_>>()?,
         };
         mounts::mount(c"tmpfs", c"/proc", c"mode=555,size=4k,nr_inodes=20", false)?;
-        std::fs::create_dir(&place)?;
+        std::fs::create_dir(&process_folder)?;
         symlink(&own, "/proc/self")?;
         for (part, path) in parts {
             if path.ends_with("fd") {
                 std::fs::create_dir(&path)?;
-            } else if path != place {
+            } else if path != process_folder {
                 File::create(&path)?;
             }
             mounts::attach(part.as_fd(), &c_string(&path)?)?;

@@ -172,11 +172,11 @@ impl HierarchyKind {
 impl GroupPart {
     /// Creates a group in the first of the places in which all limits work. If there is no such place, uses the first
     /// one in which a group can be created.
-    fn create(kind: HierarchyKind, places: &[PathBuf]) -> io::Result<Option<Self>> {
+    fn create(kind: HierarchyKind, parents: &[PathBuf]) -> io::Result<Option<Self>> {
         let (mut weaker, mut problem) = (None, None);
-        for place in places {
-            remove_abandoned_groups(place);
-            match Self::create_in(kind, place) {
+        for parent in parents {
+            remove_abandoned_groups(parent);
+            match Self::create_in(kind, parent) {
                 Ok(part) if part.limits.len() == kind.limits().len() => return Ok(Some(part)),
                 // A group of version 1 without the limit is useless.
                 Ok(part) if weaker.is_none() && kind == HierarchyKind::Unified => weaker = Some(part),
@@ -190,13 +190,13 @@ impl GroupPart {
         }
     }
 
-    fn create_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
+    fn create_in(kind: HierarchyKind, parent: &Path) -> io::Result<Self> {
         const MAX_TRIES: u32 = 10;
         let mut tries = 0;
         loop {
-            match Self::create_once(kind, place) {
+            match Self::create_once(kind, parent) {
                 // A cleanup by another supervisor may have removed the group before it was locked.
-                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES && place.is_dir() => {
+                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES && parent.is_dir() => {
                     tries += 1
                 }
                 done => return done,
@@ -204,8 +204,8 @@ impl GroupPart {
         }
     }
 
-    fn create_once(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
-        let (path, folder) = create_locked_group(place)?;
+    fn create_once(kind: HierarchyKind, parent: &Path) -> io::Result<Self> {
+        let (path, folder) = create_locked_group(parent)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
         // A group is useful only if it can be entered and, in version 2, can be killed.
         if kind == HierarchyKind::Unified {
@@ -262,10 +262,10 @@ fn find_value(text: &str, key: &str) -> Option<u64> {
 /// # Errors
 ///
 /// Fails with `NotFound` if the group was removed before it was locked.
-fn create_locked_group(place: &Path) -> io::Result<(PathBuf, File)> {
+fn create_locked_group(parent: &Path) -> io::Result<(PathBuf, File)> {
     // In another process namespace, a process may have the same number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-    let path = place.join(format!("{GROUP_PREFIX}{}-{now}", std::process::id()));
+    let path = parent.join(format!("{GROUP_PREFIX}{}-{now}", std::process::id()));
     std::fs::create_dir(&path)?;
     let folder = File::open(&path)?;
     folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
@@ -275,8 +275,8 @@ fn create_locked_group(place: &Path) -> io::Result<(PathBuf, File)> {
 }
 
 /// Removes empty groups of killed supervisors. Each is locked while it is removed.
-fn remove_abandoned_groups(place: &Path) {
-    for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
+fn remove_abandoned_groups(parent: &Path) {
+    for entry in std::fs::read_dir(parent).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(GROUP_PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         if folder.try_lock().is_ok() {
@@ -299,11 +299,11 @@ pub(crate) fn memory_groups() -> Vec<PathBuf> {
 /// Returns the places in which a new group can be created: in the group of this process, and then in its parents, up to
 /// the mounted root.
 fn list_group_places(mounts: &str, groups: &str, kind: HierarchyKind) -> Vec<PathBuf> {
-    let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
+    let limits_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {
         HierarchyKind::Unified => line.strip_prefix("0::"),
         HierarchyKind::Memory => {
-            line.split_once(':')?.1.split_once(':').filter(|(list, _)| of_memory(list)).map(|(_, path)| path)
+            line.split_once(':')?.1.split_once(':').filter(|(list, _)| limits_memory(list)).map(|(_, path)| path)
         }
     });
     let Some(own) = own else { return Vec::new() };
@@ -312,7 +312,9 @@ fn list_group_places(mounts: &str, groups: &str, kind: HierarchyKind) -> Vec<Pat
         let mut fields = before.split(' ').skip(3);
         let fits = match kind {
             HierarchyKind::Unified => after.starts_with("cgroup2 "),
-            HierarchyKind::Memory => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(of_memory),
+            HierarchyKind::Memory => {
+                after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(limits_memory)
+            }
         };
         fits.then_some((fields.next()?, fields.next()?))
     });

@@ -20,5 +20,5 @@ pub(super) fn is_inside(announced: &PendingCall, root: &Path) -> bool {
     let is_lock_call =
         announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);
-    is_lock_call && std::fs::read_link(entry).is_ok_and(|place| place.starts_with(root))
+    is_lock_call && std::fs::read_link(entry).is_ok_and(|target| target.starts_with(root))
 }

@@ -45,8 +45,8 @@ pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root:
     };
     // The current name of the open file is checked, and then the mode of this open file is changed.
     let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
-    let place = std::fs::read_link(&entry).map_err(|_| libc::EPERM)?;
-    if place == root || !place.starts_with(root) {
+    let target = std::fs::read_link(&entry).map_err(|_| libc::EPERM)?;
+    if target == root || !target.starts_with(root) {
         return Err(libc::EPERM);
     }
     std::fs::set_permissions(&entry, Permissions::from_mode((mode & MODE_BITS) as u32))

@@ -100,10 +100,10 @@ fn try_execution() -> (Option<String>, bool) {
     match in_folder() {
         Ok(()) => (None, false),
         Err(error) if error.raw_os_error() == Some(libc::EACCES) => {
-            let why = in_memory().err().map(|memory| {
+            let message = in_memory().err().map(|memory| {
                 format!("programs cannot be executed in {} ({error}) or in memory ({memory})", folder.display())
             });
-            (why, true)
+            (message, true)
         }
         // A grading would report this problem of the folder itself.
         Err(error) => (Some(format!("{}: {error}", folder.display())), false),

@@ -162,7 +162,7 @@ pub(super) struct ProviderArguments {
 /// Returns the scheme and host of a URL that an administrator typed.
 fn parse_public_url(text: &str) -> Result<String, String> {
     let authority = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
-    let host = authority.map(|place| place.trim_end_matches('/')).unwrap_or_default();
+    let host = authority.map(|host| host.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
         return Err("the URL must be https://HOST or http://HOST:PORT without a path".to_owned());
     }

@@ -34,7 +34,7 @@ impl fmt::Display for Address {
             Self::Postgres(url) => {
                 // The password may contain an @; the host's name can't.
                 let rest = url.split_once("://").map_or("", |(_, rest)| rest);
-                let host = rest.rsplit_once('@').map_or(rest, |(_, place)| place);
+                let host = rest.rsplit_once('@').map_or(rest, |(_, host)| host);
                 // The query may also contain the password, as `password=...`.
                 write!(f, "postgres://{}", host.split('?').next().unwrap_or_default())
             }

@@ -455,11 +455,11 @@ pub(super) async fn submission(
     if let Some(job) = submission.job.filter(|_| submission.state == "running") {
         submission.expected_seconds = queue::find_time_left(transaction, JobKind::Grading, job).await?;
     } else if let Some(job) = submission.job
-        && let Some(place) = queue::find_queue_position(transaction, &app.0.policy, JobKind::Grading, job).await?
+        && let Some(position) = queue::find_queue_position(transaction, &app.0.policy, JobKind::Grading, job).await?
     {
-        submission.ahead = Some(place.ahead);
-        submission.lacks_worker = !place.is_served;
-        submission.expected_seconds = place.expected.map(|expected| expected.as_secs().max(1));
+        submission.ahead = Some(position.ahead);
+        submission.lacks_worker = !position.is_served;
+        submission.expected_seconds = position.expected.map(|expected| expected.as_secs().max(1));
     }
     if let Some(grade) = &mut submission.grade {
         let statement = "SELECT name, media_type, digest, size FROM result_file WHERE result = ? ORDER BY name";
@@ -505,14 +505,14 @@ pub(super) async fn history(
             None => (column("code")?, column("points")?, column("max_points")?),
         })
     };
-    let mut by_hand = None;
+    let mut staff_points = None;
     let read = |row: &Row| {
         let (old_code, old_points, old_max_points) = read_grade(row, "old")?;
         let (new_code, new_points, new_max_points) = read_grade(row, "new")?;
-        let old_points = by_hand.clone().or(old_points);
+        let old_points = staff_points.clone().or(old_points);
         // The points that staff set count instead of the grader's until staff remove them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
-            by_hand = row.maybe_text("given")?;
+            staff_points = row.maybe_text("given")?;
         }
         Ok(read_row!(row => History {
             reason, by = "login", result, version, grader;
@@ -521,7 +521,7 @@ pub(super) async fn history(
             old_points,
             old_max_points,
             new_code: new_code.unwrap_or_default(),
-            new_points: by_hand.clone().or(new_points),
+            new_points: staff_points.clone().or(new_points),
             new_max_points,
             by_what: describe_task(&row.text("task")?, is_staff),
             task: if is_staff { row.text("task")? } else { String::new() },

@@ -294,7 +294,7 @@ pub(super) fn join_name(whole: Option<String>, parts: [Option<String>; 2]) -> Op
 pub(crate) fn find_role(roles: &[String]) -> Option<LtiRole> {
     const COURSE_ROLES: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, but still in use.
-    let in_course = |role: &str| -> Option<String> {
+    let course_role = |role: &str| -> Option<String> {
         let rest = role.strip_prefix(COURSE_ROLES)?;
         // A principal role such as `#Instructor`, or a sub-role such as `/Instructor#TeachingAssistant`.
         match rest.strip_prefix('/') {
@@ -302,8 +302,10 @@ pub(crate) fn find_role(roles: &[String]) -> Option<LtiRole> {
             None => rest.strip_prefix('#').map(str::to_owned),
         }
     };
-    let course_roles: Vec<String> =
-        roles.iter().filter_map(|role| if role.contains('/') { in_course(role) } else { Some(role.clone()) }).collect();
+    let course_roles: Vec<String> = roles
+        .iter()
+        .filter_map(|role| if role.contains('/') { course_role(role) } else { Some(role.clone()) })
+        .collect();
     let has_role = |name: &str| course_roles.iter().any(|role| role == name);
     if has_role("Instructor") || has_role("Administrator") || has_role("ContentDeveloper") {
         return Some(LtiRole::Staff);

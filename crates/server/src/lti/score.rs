@@ -254,12 +254,12 @@ pub(super) enum ColumnState {
 pub(super) async fn find_column(
     transaction: &mut Transaction,
     link: i64,
-    at_most: i64,
+    max_millis: i64,
 ) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
            AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)";
-    let mine = transaction.execute(statement, values![at_most, link, at_most]).await?;
+    let mine = transaction.execute(statement, values![max_millis, link, max_millis]).await?;
     if mine > 0 {
         return Ok(ColumnState::Unclaimed);
     }

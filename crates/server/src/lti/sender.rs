@@ -127,12 +127,12 @@ async fn send_claimed(database: &Database, policy: &QueuePolicy, lti: &Lti, clai
         Err(fault) => {
             let text = fault.to_string();
             tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
-            let (tries, least) = match &fault {
+            let (max_tries, min_wait) = match &fault {
                 ServiceFault::Unavailable { retry_after, .. } => (MAX_OUTAGE_TRIES, retry_after.unwrap_or_default()),
                 ServiceFault::Rejected(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
             };
-            let patient_policy = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
-            let failure = queue::fail(&mut transaction, &patient_policy, &claim.lease, &text, least).await?;
+            let patient_policy = QueuePolicy { max_failures: max_tries, longest_wait: MAX_WAIT, ..*policy };
+            let failure = queue::fail(&mut transaction, &patient_policy, &claim.lease, &text, min_wait).await?;
             match (failure, serde_json::from_str::<ScoreOrder>(&claim.payload)) {
                 (Failure::GivenUp, _) => {
                     score::record_failure(&mut transaction, &claim.payload, &text).await?;

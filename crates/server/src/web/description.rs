@@ -194,10 +194,10 @@ fn complete_parameter(parameter: &mut Parameter) {
 }
 
 /// Returns the schema of an integer that every language can read from JSON without rounding.
-fn number_schema(least: i64) -> RefOr<Schema> {
+fn number_schema(minimum: i64) -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
     let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
-    number.minimum(Some(least)).maximum(Some(MAX_INTEGER)).into()
+    number.minimum(Some(minimum)).maximum(Some(MAX_INTEGER)).into()
 }
 
 /// Returns the schema of a file's bytes.

@@ -75,7 +75,8 @@ fn is_same_site(headers: &HeaderMap, app: &App) -> bool {
     }
     let Some(origin) = text(header::ORIGIN) else { return false };
     origin == app.public
-        || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
+        || text(header::HOST)
+            .is_some_and(|host| origin.split_once("://").is_some_and(|(_, authority)| authority == host))
 }
 
 /// Adds the headers that every answer has.

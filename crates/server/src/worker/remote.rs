@@ -182,18 +182,18 @@ impl JobSource for RemoteSource {
     }
 
     async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {
-        let (lease, wanted, place) = (format_lease(lease), digest.clone(), file.to_owned());
+        let (lease, wanted, path) = (format_lease(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
             let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
             let answer = parts.sign(request, Some(&lease)).call().map_err(outage)?;
             let mut answer = check_status(answer)?;
-            let written = fs::File::create_new(&place).and_then(|mut output| {
+            let written = fs::File::create_new(&path).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
                 io::copy(&mut input, &mut output)
             });
             written.map(drop).map_err(|error| {
                 // Remove the file, so that a retry can create it.
-                drop(fs::remove_file(&place));
+                drop(fs::remove_file(&path));
                 outage(error)
             })
         })
@@ -208,9 +208,9 @@ impl JobSource for RemoteSource {
 
     async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, SourceError> {
         let artifact = digest_of_file(file).await.map_err(|error| SourceError::Rejected(error.to_string()))?;
-        let (lease, digest, place) = (format_lease(lease), artifact.digest.clone(), file.to_owned());
+        let (lease, digest, path) = (format_lease(lease), artifact.digest.clone(), file.to_owned());
         self.call(move |parts| {
-            let input = fs::File::open(&place).map_err(|error| SourceError::Rejected(error.to_string()))?;
+            let input = fs::File::open(&path).map_err(|error| SourceError::Rejected(error.to_string()))?;
             let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
             let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(outage)?;
             check_status(answer).map(drop)

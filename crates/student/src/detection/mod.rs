@@ -69,11 +69,11 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
     let (kind, number) = pair.object.numbers();
     let slip = IndexSlip::for_student(student, kind);
     let body = |index: usize| {
-        let place = |list: &[f64]| {
+        let position = |list: &[f64]| {
             if slip.uses_particle_number { Vec2::new(list[index], list[index + 1]) } else { vector_at(list, index) }
         };
-        let start = frame.transform_point(place(q_start), vector_at(q_start, pair.particle));
-        let end = frame.transform_point(place(q_end), vector_at(q_end, pair.particle));
+        let start = frame.transform_point(position(q_start), vector_at(q_start, pair.particle));
+        let end = frame.transform_point(position(q_end), vector_at(q_end, pair.particle));
         PointMotion { start, shift: end - start }
     };
     let radius_of = |role: usize, index: usize| {
@@ -294,8 +294,8 @@ pub fn detect_contacts(
 
 /// Returns whether a time of impact is within the step according to this student's program.
 fn is_within_step(student: Student, motion: &PairMotion, time: f64, time_step: f64) -> bool {
-    let is_of_time = |mistake: &Mistake| mistake.area() == Area::Decision && !REJECTION_MISTAKES.contains(mistake);
-    match student.mistakes().find(is_of_time) {
+    let concerns_time = |mistake: &Mistake| mistake.area() == Area::Decision && !REJECTION_MISTAKES.contains(mistake);
+    match student.mistakes().find(concerns_time) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
         Some(Mistake::DecisionOpenEndParticles) if matches!(motion, PairMotion::Particles { .. }) => time < 1.0,
         Some(Mistake::DecisionOpenEndHalfPlanes) if matches!(motion, PairMotion::HalfPlane { .. }) => time < 1.0,

@@ -12,7 +12,7 @@ const MODULE_AREAS: &[Area] = &[Area::Handover];
 /// Divides the polynomials as this student's program does. Most programs leave them unchanged.
 pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) {
     let size: fn(&PairMotion, &[f64]) -> f64 = match student.mistake_in(MODULE_AREAS) {
-        Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
+        Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |maximum, c| maximum.max(c.abs())),
         Some(Mistake::NormalizedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
         Some(Mistake::NormalizedPerPair) => |motion, _| length_for_pair(motion),
         _ => return,

@@ -48,8 +48,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let overlay = &arguments.overlay;
     let overlay = overlay.as_ref().map(|trace| motion::read_motion(&scene.scene, trace, picks)).transpose()?;
     if main.pictures == 0 {
-        let why = main.stop_reason.map_or_else(String::new, |why| format!(": {why}"));
-        bail!("there is nothing to draw of {}{why}", main.name);
+        let reason = main.stop_reason.map_or_else(String::new, |reason| format!(": {reason}"));
+        bail!("there is nothing to draw of {}{reason}", main.name);
     }
     let stopped: Vec<String> = [Some(&main), overlay.as_ref()]
         .into_iter()
@@ -59,13 +59,13 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
     let mut reel = DrawableMotion::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, RenderTarget::Stream(_)) && arguments.output == Path::new("-");
-    let place = input::printable_name(&arguments.output);
+    let output = input::printable_name(&arguments.output);
     let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
-        true => error.context(format!("cannot write {place}")),
+        true => error.context(format!("cannot write {output}")),
         false => error,
     })?;
     stopped.iter().for_each(console::print_error);
-    let summary = format!("{words} into {place}\n");
+    let summary = format!("{words} into {output}\n");
     if to_stdout {
         console::print_error(&summary);
     } else {
@@ -133,8 +133,8 @@ fn select_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
     let picks = StepRange { first, every, last };
     let pictures = picks.count();
     if pictures > MAX_PICTURES {
-        let least = last.div_ceil(MAX_PICTURES - 1);
-        bail!("this would draw {pictures} pictures, more than the limit of {MAX_PICTURES}; add --every {least}");
+        let min_interval = last.div_ceil(MAX_PICTURES - 1);
+        bail!("this would draw {pictures} pictures, more than the limit of {MAX_PICTURES}; add --every {min_interval}");
     }
     if pictures == 0 {
         let steps = format_count(last.into(), "step");
@@ -171,18 +171,18 @@ impl DrawableMotion {
 
     /// Draws every picture, and passes it to `draw`: its number from 1, its step, and its shapes.
     fn for_each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
-        let (mut place, mut other) = (Vec::new(), Vec::new());
+        let (mut positions, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
         for number in 1..=self.main.pictures {
             let step = self.steps.step(number);
-            if !self.main.next(&mut place)? {
+            if !self.main.next(&mut positions)? {
                 bail!("the stored motion of {} changed while it was being read", self.main.name);
             }
             let overlaid = match &mut self.overlay {
                 Some(overlay) => overlay.next(&mut other)?,
                 None => false,
             };
-            let shapes = self.painter.picture(step, &place, overlaid.then_some(&other[..]));
+            let shapes = self.painter.picture(step, &positions, overlaid.then_some(&other[..]));
             if !self.is_single || number == self.main.pictures {
                 draw(number, step, &shapes)?;
             }

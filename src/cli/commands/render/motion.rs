@@ -67,9 +67,9 @@ impl Motion {
     /// Fails if the temporary file can't be read.
     pub(super) fn next(&mut self, row: &mut Vec<f64>) -> Result<bool> {
         row.clear();
-        for place in 0..self.width {
+        for column in 0..self.width {
             let (mut bytes, context) = ([0; 8], "cannot read the temporary file again");
-            if place == 0 && self.rows.fill_buf().context(context)?.is_empty() {
+            if column == 0 && self.rows.fill_buf().context(context)?.is_empty() {
                 return Ok(false);
             }
             self.rows.read_exact(&mut bytes).context(context)?;

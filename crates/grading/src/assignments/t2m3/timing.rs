@@ -47,8 +47,8 @@ fn begin_scene(description: &str, stiffness: u32) -> String {
 }
 
 /// Adds a particle to a scene. Its position and its velocity are in thousandths.
-fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
-    let ([px, py], [vx, vy]) = (place.map(format_thousandths), velocity.map(format_thousandths));
+fn add_particle(text: &mut String, position: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
+    let ([px, py], [vx, vy]) = (position.map(format_thousandths), velocity.map(format_thousandths));
     let (radius, fixed) = (format_thousandths(radius), u8::from(fixed));
     let _ = writeln!(
         text,
@@ -66,10 +66,10 @@ fn box_of_balls() -> String {
     }
     for index in 0..15_000 {
         let (column, row) = (index % 150, index / 150);
-        let place = [200 * column + 100 + drawn.next() / 20, 200 * row + 100 + drawn.next() / 20];
+        let position = [200 * column + 100 + drawn.next() / 20, 200 * row + 100 + drawn.next() / 20];
         let haste = if drawn.next() < 10 { 20 } else { 1 };
         let velocity = [haste * (drawn.next() - 500), haste * (drawn.next() - 500)];
-        add_particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
+        add_particle(&mut text, position, velocity, 80 + drawn.next() / 50, false);
     }
     for edge in 0..4 {
         let _ = writeln!(text, "<edge i=\"{edge}\" j=\"{}\" radius=\"0.4\"/>", (edge + 1) % 4);
@@ -87,8 +87,8 @@ fn pile_of_ribbons() -> String {
     for ribbon in 0..ribbons {
         let left_x = 2 * drawn.next();
         for link in 0..length {
-            let place = [left_x + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
-            add_particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
+            let position = [left_x + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
+            add_particle(&mut text, position, [drawn.next() / 4, -drawn.next()], 40, false);
             if link > 0 {
                 let second = ribbon * length + link;
                 let edge = ribbon * (length - 1) + link - 1;

@@ -22,23 +22,23 @@ pub(super) struct ReferenceImpact {
 
 impl Follower<'_> {
     /// Returns the decision with which the step continues. The submission's decision is used if the trace shows it.
-    pub(super) fn choose_decision(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
+    pub(super) fn choose_decision(&mut self, pair: Pair, logged_decision: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judgement.total();
         let own = self.call.own.take();
         if let Some(own) = own {
-            self.report_losses(pair, by_polynomials, own);
+            self.report_losses(pair, logged_decision, own);
         }
         let decision = match self.pass.stage {
-            Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
+            Stage::Simple | Stage::ContinuousTime => self.follow(pair, logged_decision),
             Stage::Impulses { .. } | Stage::Geometric { .. } if self.flipped_decisions.contains(&call) => {
-                self.reverse_decision(by_polynomials)
+                self.reverse_decision(logged_decision)
             }
-            Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
+            Stage::Impulses { .. } | Stage::Geometric { .. } => logged_decision,
         };
         let is_expected = match own {
-            Some(own) if (own.time <= 1.0) != (by_polynomials.time() <= 1.0) => own.time <= 1.0,
-            _ => by_polynomials.collides(),
+            Some(own) if (own.time <= 1.0) != (logged_decision.time() <= 1.0) => own.time <= 1.0,
+            _ => logged_decision.collides(),
         };
         // A decision that is counted as wrong is not also counted as borderline.
         if decision.collides() != is_expected && self.judgement.total() == findings {
@@ -51,26 +51,26 @@ impl Follower<'_> {
     }
 
     /// Returns the decision about a call whose logged polynomials exclude an impact, and for which the reference's own
-    /// polynomials, without losses, give the decision `by_own`.
-    pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
-        let Decision::Hit { time, .. } = by_own else { return by_own };
+    /// polynomials, without losses, give the decision `own_decision`.
+    pub(super) fn resolve_dispute(&mut self, pair: Pair, own_decision: Decision) -> Decision {
+        let Decision::Hit { time, .. } = own_decision else { return own_decision };
         self.call.own = Some(ReferenceImpact { time, has_losses: false });
         if self.searchable_polynomials(self.call_place(pair).index, pair.kind.polynomial_count()).is_none() {
-            return by_own;
+            return own_decision;
         }
         (self.call.is_disputed, self.has_disputes) = (true, true);
-        if self.prefers_own { by_own } else { Decision::Miss { time: ImpactTime::Excluded } }
+        if self.prefers_own { own_decision } else { Decision::Miss { time: ImpactTime::Excluded } }
     }
 
     /// Reports a decision or a time of impact that is different because of lost coefficients. Its cause is the
     /// program's factor, not round-off. With some factors the library keeps coefficients that it drops from the
     /// reference's polynomials; then nothing is lost, and the reference's decision is not used.
-    fn report_losses(&mut self, pair: Pair, by_polynomials: Decision, own: ReferenceImpact) {
+    fn report_losses(&mut self, pair: Pair, logged_decision: Decision, own: ReferenceImpact) {
         if !own.has_losses {
             return;
         }
         let Some((motion, expected)) = &self.expected_polynomials() else { return };
-        let (actual, hits) = (by_polynomials.time(), own.time <= 1.0);
+        let (actual, hits) = (logged_decision.time(), own.time <= 1.0);
         if (actual <= 1.0) != hits {
             if contact::certain_decision(motion, expected) == Some(hits) {
                 let place = self.call_place(pair);

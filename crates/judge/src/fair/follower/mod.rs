@@ -270,11 +270,11 @@ impl StepController for Follower<'_> {
             return;
         }
         let count = polynomials.len();
-        let at_once = self.find_quick_matches(pair, [q_start, q_end], index, polynomials);
-        let is_right = self.review(pair, [q_start, q_end], index, &at_once[..count]);
+        let quick_matches = self.find_quick_matches(pair, [q_start, q_end], index, polynomials);
+        let is_right = self.review(pair, [q_start, q_end], index, &quick_matches[..count]);
         if is_right {
             let lengths = || polynomials.iter().enumerate().map(|(k, own)| (own.coefficients().len(), logged(k).len()));
-            let differ = at_once[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
+            let differ = quick_matches[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
             self.judgement.lost_decisions += u64::from(differ);
             // The root search must also end for the reference's own polynomials.
             self.call.is_excluded_by_log = !differ

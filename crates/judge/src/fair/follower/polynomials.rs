@@ -22,13 +22,13 @@ impl<'a> Follower<'a> {
         pair: Pair,
         [q_start, q_end]: [&[f64]; 2],
         index: usize,
-        at_once: &[Option<Match>],
+        quick_matches: &[Option<Match>],
     ) -> bool {
-        let count = at_once.len();
+        let count = quick_matches.len();
         // The first approach polynomial that shows its form is compared with bounds.
         let is_form_known = pair.kind != PairKind::ParticleEdge || self.judgement.course_form.is_some();
-        if is_form_known && at_once.iter().all(Option::is_some) {
-            for (number, found) in at_once.iter().flatten().enumerate() {
+        if is_form_known && quick_matches.iter().all(Option::is_some) {
+            for (number, found) in quick_matches.iter().flatten().enumerate() {
                 self.judgement.add_share_and_factor(pair.kind, number, found);
             }
             return true;
@@ -40,14 +40,14 @@ impl<'a> Follower<'a> {
         };
         let mut bounded_motion = motion(q_end, bounds);
         let mut expected = bounded_motion.polynomials();
-        let matches = |expected: &ExpectedPolynomials, at_once: &[Option<Match>]| -> PolynomialComparisons {
-            std::array::from_fn(|number| match at_once.get(number) {
+        let matches = |expected: &ExpectedPolynomials, quick_matches: &[Option<Match>]| -> PolynomialComparisons {
+            std::array::from_fn(|number| match quick_matches.get(number) {
                 None => Ok(Match { scale: None, tolerance_share: 0.0 }),
                 Some(Some(found)) => Ok(*found),
                 Some(None) => compare_first(&self.judgement, expected, &self.logged_polynomial(pair, index, number)),
             })
         };
-        let mut results = matches(&expected, at_once);
+        let mut results = matches(&expected, quick_matches);
         if results.iter().any(Result::is_err)
             && let Some(known) = self.known_positions()
         {

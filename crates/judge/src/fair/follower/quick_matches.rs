@@ -67,13 +67,13 @@ impl Follower<'_> {
 fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    let mut widen = |place: Vec2| {
-        size = size.max(l1_norm(place));
-        low = [low[0].min(place.x), low[1].min(place.y)];
-        high = [high[0].max(place.x), high[1].max(place.y)];
+    let mut widen = |position: Vec2| {
+        size = size.max(l1_norm(position));
+        low = [low[0].min(position.x), low[1].min(position.y)];
+        high = [high[0].max(position.x), high[1].max(position.y)];
     };
     for particle in 0..scene.particles.len() {
-        let [start, end] = [q_start, q_end].map(|places| vector_at(places, particle));
+        let [start, end] = [q_start, q_end].map(|positions| vector_at(positions, particle));
         [start, end].into_iter().for_each(&mut widen);
         shift = shift.max(l1_norm(end - start));
     }
@@ -81,9 +81,10 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
         widen(half_plane.point);
     }
     let spread = (high[0] - low[0]).max(high[1] - low[1]);
-    let largest = |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0_f64, |most, size| most.max(size.abs()));
-    let of_particles = largest(&mut scene.particles.iter().map(|particle| particle.radius));
-    let radius = of_particles + of_particles.max(largest(&mut scene.edges.iter().map(|edge| edge.radius)));
+    let largest =
+        |sizes: &mut dyn Iterator<Item = f64>| sizes.fold(0.0_f64, |max_error, size| max_error.max(size.abs()));
+    let particle_radius = largest(&mut scene.particles.iter().map(|particle| particle.radius));
+    let radius = particle_radius + particle_radius.max(largest(&mut scene.edges.iter().map(|edge| edge.radius)));
     let normal = largest(&mut scene.half_planes.iter().map(|half_plane| l1_norm(half_plane.normal)));
     let both = |value: f64, bound: f64| {
         let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
@@ -97,8 +98,8 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
     let largest_errors = |lists: [&[BoundedValue<Magnitude>]; PairKind::MAX_POLYNOMIALS]| {
         lists.map(|list| {
             let norm: f64 = list.iter().map(|c| c.bound.0).sum();
-            let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
-            if norm < MAX_SAFE_SUM { 1.01 * most } else { f64::INFINITY }
+            let max_error = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
+            if norm < MAX_SAFE_SUM { 1.01 * max_error } else { f64::INFINITY }
         })
     };
     PairKindMap::from_fn(|kind| match kind {

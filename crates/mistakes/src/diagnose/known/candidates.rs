@@ -98,9 +98,9 @@ impl<'a> Candidates<'a> {
                 && self.scan.wrong_steps.first().is_none_or(|first| self.reproduces(candidate, first))
                 && self.scan.right_steps.iter().all(|sample| self.reproduces(candidate, sample))
         });
-        let most = remaining.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
-        remaining.retain(|(_, reproduced)| *reproduced == most && most > 0);
-        let (reproduced, samples) = (most as u64, tried as u64);
+        let max_reproduced = remaining.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
+        remaining.retain(|(_, reproduced)| *reproduced == max_reproduced && max_reproduced > 0);
+        let (reproduced, samples) = (max_reproduced as u64, tried as u64);
         remaining.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 

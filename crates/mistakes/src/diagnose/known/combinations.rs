@@ -120,8 +120,8 @@ impl<'a> Search<'a> {
         let is_candidate = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_candidate).collect();
         let mut empty = list_subsets(&self.empty_stage_rows());
-        let most = empty.len().min(MAX_SETS);
-        empty.truncate(most);
+        let set_count = empty.len().min(MAX_SETS);
+        empty.truncate(set_count);
         let explains = |set: &Vec<&'static Row>| self.is_minimal_explanation(set);
         if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
             let same_as = rows.iter().map(|_| Vec::new()).collect();
@@ -137,12 +137,12 @@ impl<'a> Search<'a> {
             let sets = empty.iter().filter(move |set| set.len() == size);
             sets.flat_map(|set| rows.iter().filter(|row| !is_empty_stage(row)).map(|row| with(set, row)))
         };
-        let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
+        let row_pairs = rows.iter().enumerate().flat_map(|(index, &one)| {
             rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
         });
         self.find_unique_set(next_to_sets(1))
             .or_else(|| self.find_unique_set(next_to_sets(2)))
-            .or_else(|| self.find_unique_set(of_two))
+            .or_else(|| self.find_unique_set(row_pairs))
     }
 
     /// Returns the only set that reproduces everything, with the alternatives for one of its rows. Returns `None` if
@@ -303,8 +303,8 @@ impl<'a> Search<'a> {
 
 /// Returns all subsets, the smallest first.
 fn list_subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
-    let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
-    let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();
+    let subset = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
+    let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(subset).collect();
     sets.sort_by_key(Vec::len);
     sets
 }

@@ -154,12 +154,12 @@ fn explain_combination(
     correct: ApproachForm,
     several: &RowCombination,
 ) -> Vec<Explanation> {
-    let of_row = |(row, others): (&&'static Row, &Vec<&'static Row>)| {
+    let to_explanation = |(row, others): (&&'static Row, &Vec<&'static Row>)| {
         let rivals = several.rival_rows.iter().filter(|_| is_empty_stage(row));
         let same_as = others.iter().chain(rivals).map(|other| other.id.to_owned()).collect();
         Explanation { same_as, ..row_explanation(row, (several.samples, several.samples)) }
     };
-    let mut all: Vec<Explanation> = several.rows.iter().zip(&several.equivalent_rows).map(of_row).collect();
+    let mut all: Vec<Explanation> = several.rows.iter().zip(&several.equivalent_rows).map(to_explanation).collect();
     if let Some(first) = all.first_mut() {
         first.example = scan.wrong_steps.first().map(|sample| example::find_example(reference, scene, correct, sample));
     }

@@ -30,12 +30,12 @@ impl ApproachForm {
 /// cheaper than polynomials, and penalty forces check only nearby pairs. Solves of implicit integrators are counted
 /// when they happen.
 pub(super) fn step_work(scene: &Scene) -> u64 {
-    let of_pairs = match scene.collision {
+    let pair_work = match scene.collision {
         Collision::None => 0,
         Collision::Penalty { .. } => scene.particles.len() + scene.edges.len(),
         _ => pairs(scene).count() / 128,
     };
-    10 + (of_pairs + scene.forces.len() / 16) as u64
+    10 + (pair_work + scene.forces.len() / 16) as u64
 }
 
 /// Returns the records that a program writes in a step from a given state, or `None` if the step fails or writes

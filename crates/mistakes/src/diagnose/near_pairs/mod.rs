@@ -58,8 +58,8 @@ pub(super) fn explain_pairs(reference: &mut Reference<'_>, scene: &Scene, scan: 
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut remaining_work = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<TraitVariant> = variants().collect();
-    let of_kind = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
-    let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(of_kind).into() };
+    let no_counts = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
+    let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(no_counts).into() };
     let mut seen_pairs: BTreeSet<(Pair, usize)> = BTreeSet::new();
     for kept in steps {
         let own = reference.step(kept.step, &kept.before, &mut ())?;
@@ -105,9 +105,9 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
             && chance * (variant.row.variant_count() as f64) < MAX_CHANCE_PROBABILITY
     };
     let telling: Vec<_> = counts.filter(is_telling).collect();
-    let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
+    let Some(minimum) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
     let mut reported: Vec<(TraitVariant, u64, u64)> = Vec::new();
-    for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
+    for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == minimum) {
         // Only the strictest variant of a row is reported.
         reported.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         reported.push(one);

@@ -37,10 +37,10 @@ pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, s
 /// from values of the polynomial. Then all coefficients have the rounding error of the largest one.
 pub(super) fn polynomial_matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
-    let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / COEFFICIENT_TOLERANCE * norm;
+    let min_bound = FAIR_NORM_UNITS * UNIT_ROUNDOFF / COEFFICIENT_TOLERANCE * norm;
     (0..expected.len().max(logged.len())).all(|power| {
         let BoundedValue { value, bound } = expected_at(expected, power);
-        coefficient_matches(BoundedValue { value, bound: bound.max(least) }, logged_at(logged, power), scale)
+        coefficient_matches(BoundedValue { value, bound: bound.max(min_bound) }, logged_at(logged, power), scale)
     })
 }
 

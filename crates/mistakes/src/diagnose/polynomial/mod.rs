@@ -84,11 +84,11 @@ pub fn explain_polynomials(samples: &[Sample]) -> Vec<Explanation> {
 fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
-        let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
-        let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
+        let kind_samples = || samples.iter().filter(|sample| sample.motion.kind() == kind);
+        let logged = kind_samples().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
         if logged < kind.polynomial_count() {
             details.push(Detail::Polynomial(PolynomialDetail::Logged { logged, of: kind.polynomial_count() }));
-            count += of_kind().count() as u64;
+            count += kind_samples().count() as u64;
         }
         subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));
     }
@@ -188,9 +188,9 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
         return Vec::new();
     };
     let is_formula = |row: &&Row| {
-        let is_of_kind = row.pair_kind() == Some(kind)
+        let has_kind = row.pair_kind() == Some(kind)
             && matches!(row.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane);
-        row.kind == RowKind::Wrong && (is_of_kind || row.area == Area::Handover)
+        row.kind == RowKind::Wrong && (has_kind || row.area == Area::Handover)
     };
     let makes = |row: &&Row| {
         study.cases.iter().all(|case| {

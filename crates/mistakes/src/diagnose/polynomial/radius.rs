@@ -70,9 +70,10 @@ fn overlap(subject: Subject, inputs: &Inputs, square: BoundedValue) -> Vec<Bound
 /// Returns the square of the sum of the radii that the logged overlap contains, by least squares, or `None` if it is
 /// negative.
 fn fit_square(subject: Subject, case: &PolynomialSample) -> Option<f64> {
-    let [without, with_one] = [0.0, 1.0].map(|square| overlap(subject, &case.inputs, BoundedValue::from_exact(square)));
+    let [with_zero, with_one] =
+        [0.0, 1.0].map(|square| overlap(subject, &case.inputs, BoundedValue::from_exact(square)));
     let (mut product, mut norm) = (0.0, 0.0);
-    for (power, (none, one)) in without.iter().rev().zip(with_one.iter().rev()).enumerate() {
+    for (power, (none, one)) in with_zero.iter().rev().zip(with_one.iter().rev()).enumerate() {
         let slope = one.value - none.value;
         let logged = logged_at(case.logged, power).unwrap_or(0.0) / case.scale;
         product += slope * (logged - none.value);

@@ -112,10 +112,10 @@ fn add_rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for degree in 1..=study.subject.degree() {
         for other in 0..degree {
             let detail = Some(PolynomialDetail::Exchanged { powers: [degree, other] });
-            let places = [degree, other].map(|power| study.subject.degree() - power);
+            let indices = [degree, other].map(|power| study.subject.degree() - power);
             found.extend(predict(study, ListGuess::TwoExchanged, detail, 3.0, |case| {
                 let mut list = case.expected.clone();
-                list.swap(places[0], places[1]);
+                list.swap(indices[0], indices[1]);
                 list
             }));
         }

@@ -164,7 +164,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the largest deviation of a coefficient, relative to the size of its terms.
     pub fn max_error(&self) -> f64 {
-        let of_case = |case: &PolynomialSample| {
+        let case_error = |case: &PolynomialSample| {
             let scale = fit_scale(&case.expected, case.logged).unwrap_or(case.scale);
             let powers = 0..case.expected.len().max(case.logged.len());
             let errors = powers.map(|power| {
@@ -174,9 +174,9 @@ impl<'a> PolynomialStudy<'a> {
                 if residual <= missing { 0.0 } else { residual / (scale * expected.bound) }
             });
             // NaN counts as the largest error.
-            errors.fold(0.0_f64, |most, error| if error <= most { most } else { error })
+            errors.fold(0.0_f64, |maximum, error| if error <= maximum { maximum } else { error })
         };
-        self.cases.iter().map(of_case).fold(0.0_f64, |most, error| if error <= most { most } else { error })
+        self.cases.iter().map(case_error).fold(0.0_f64, |maximum, error| if error <= maximum { maximum } else { error })
     }
 
     /// Finds the positive factor that most coefficients agree on: 1, another factor for all samples, or one for each
@@ -316,8 +316,8 @@ fn thin_out(cases: Vec<PolynomialSample>) -> Vec<PolynomialSample> {
         return cases;
     }
     let chosen = |right: bool, count: usize| {
-        let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].is_right == right).collect();
-        spread_indices(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
+        let indices: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].is_right == right).collect();
+        spread_indices(indices.len(), count).map(|index| indices[index]).collect::<Vec<_>>()
     };
     let wrong = chosen(false, MAX_CASES * 3 / 4);
     let right = chosen(true, MAX_CASES - wrong.len());

@@ -326,8 +326,8 @@ impl TermFit<'_> {
     /// Returns the exact forms of the whole polynomial that follow from the coefficients' edits, the likeliest first.
     fn forms(&self, guesses: &[CoefficientEdits]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
-            let of_edit = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);
-            let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(of_edit).collect();
+            let edit_lines = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);
+            let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(edit_lines).collect();
             let with = |form: &Vec<PolynomialDetail>| {
                 edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
             };
@@ -353,8 +353,8 @@ impl TermFit<'_> {
             }
             _ => None,
         };
-        let is_of_terms = matches!(guess.edit(), CoefficientEdit::Terms(_));
-        let others = guess.edits[1..].iter().filter(|_| is_of_terms).filter_map(as_well);
+        let edits_terms = matches!(guess.edit(), CoefficientEdit::Terms(_));
+        let others = guess.edits[1..].iter().filter(|_| edits_terms).filter_map(as_well);
         self.detail_lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
     }
 

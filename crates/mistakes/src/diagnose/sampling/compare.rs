@@ -76,9 +76,9 @@ pub struct LoggedNumbers {
 
 impl LoggedNumbers {
     fn values(&self) -> impl Iterator<Item = f64> {
-        let of_impulse = |impulse: &LoggedImpulse| [impulse.normal.x, impulse.normal.y, impulse.time];
+        let impulse_values = |impulse: &LoggedImpulse| [impulse.normal.x, impulse.normal.y, impulse.time];
         let numbers = self.state.positions.iter().chain(&self.state.velocities).chain(&self.polynomials.coefficients);
-        numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
+        numbers.copied().chain(self.impulses.iter().flat_map(impulse_values))
     }
 
     /// Returns the memory that the numbers use, in bytes.

@@ -162,19 +162,19 @@ pub(super) fn explain_overlaps(
 impl ContactStage {
     /// Compares contacts up to the first unexpected one, because later ones depend on it.
     fn compare_step(&mut self, facts: &StepFacts) {
-        let place = |theirs: &LoggedImpulse| {
+        let find_detection = |theirs: &LoggedImpulse| {
             let theirs = theirs.pair()?;
             facts.detections.iter().position(|(pair, _)| *pair == theirs)
         };
         // If a pass has more or fewer polynomials than expected, contacts cannot be assigned to polynomials.
         let is_whole = facts.actual.end.polynomials.len() == facts.expected.end.polynomials.len();
-        let is_certain = |place: usize| {
-            let end = facts.detections.get(place + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
+        let is_certain = |index: usize| {
+            let end = facts.detections.get(index + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
             end <= facts.right_polynomials
         };
         let mut theirs = facts.actual.end.impulses.iter().peekable();
         for hit in &facts.hits {
-            let next = theirs.peek().map(|theirs| (**theirs, place(theirs)));
+            let next = theirs.peek().map(|theirs| (**theirs, find_detection(theirs)));
             match next {
                 Some((impulse, Some(at))) if at == hit.detection_index => {
                     if !is_certain(at) || !self.is_right_hit(hit, &impulse) {
@@ -198,7 +198,7 @@ impl ContactStage {
             }
         }
         if let Some(impulse) = theirs.next()
-            && let Some(at) = place(impulse).filter(|_| is_whole)
+            && let Some(at) = find_detection(impulse).filter(|_| is_whole)
             && is_certain(at)
         {
             self.superfluous_contacts.push((facts.detections[at].0.kind, impulse.time));

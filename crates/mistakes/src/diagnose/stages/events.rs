@@ -95,8 +95,8 @@ impl Observer for StepEvents<'_> {
         self.keep_other_form(detection);
         let events = &mut self.events;
         if let Decision::Hit { time, normal } = detection.decision {
-            let (pass, place) = (events.passes.len().saturating_sub(1), events.detections.len());
-            events.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
+            let (pass, detection_index) = (events.passes.len().saturating_sub(1), events.detections.len());
+            events.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index });
         }
         events.detections.push((detection.pair, events.polynomial_count));
         events.polynomial_count += detection.polynomials.len();

@@ -38,8 +38,8 @@ pub(super) struct Responses {
 
 impl Responses {
     pub(super) fn new(scene: &Scene, facts: &[StepFacts]) -> Self {
-        let in_rounds = matches!(scene.collision, Collision::Hybrid { .. });
-        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, has_rounds: in_rounds };
+        let has_rounds = matches!(scene.collision, Collision::Hybrid { .. });
+        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, has_rounds };
         for facts in facts {
             for (hit, expected, actual) in find_isolated(scene, facts) {
                 let mut changes: Vec<(ChangedQuantity, Change)> = Vec::new();
@@ -57,8 +57,8 @@ impl Responses {
                     continue;
                 }
                 all.contacts += 1;
-                for (place, change) in changes {
-                    all.changes.entry(place).or_default().push(change);
+                for (quantity, change) in changes {
+                    all.changes.entry(quantity).or_default().push(change);
                 }
             }
         }
@@ -67,8 +67,9 @@ impl Responses {
 
     /// Returns whether there are isolated contacts of this kind, and all are right.
     pub(super) fn are_right(&self, kind: PairKind) -> bool {
-        let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
-        of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
+        let kind_changes = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
+        kind_changes().next().is_some()
+            && kind_changes().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
     /// Returns the fault in responses, or `None` if all visible responses are right.

@@ -193,9 +193,9 @@ impl<'a> FirstRound<'a> {
             let all = ParticleGroup::union(groups);
             self.is_visible(&all) && self.are_at(&self.moved_state(&[&all]), &all.particles)
         };
-        let mut with_all = others.clone();
-        with_all.insert(0, zone);
-        if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&with_all)) {
+        let mut all_zones = others.clone();
+        all_zones.insert(0, zone);
+        if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&all_zones)) {
             return Some(ZoneResult::Wrong(WrongZones::Joined));
         }
         let foreign = self.particles_moved_outside_zones();

@@ -95,14 +95,14 @@ impl NearbyPairs {
             sizes.push(Strips::new(own, margin));
             rest = smaller;
         }
-        let most = MAX_PAIRS_PER_OBJECT * (scene.particles.len() + scene.edges.len());
+        let max_pairs = MAX_PAIRS_PER_OBJECT * (scene.particles.len() + scene.edges.len());
         let (particles, edge_pairs) = (Vec::new(), Vec::new());
         Self {
             radii,
             size_classes: sizes,
             edges: scene.edges.clone(),
             margin,
-            max_pairs: most,
+            max_pairs,
             particles,
             edge_pairs,
             tested_count: 0,
@@ -183,9 +183,10 @@ fn full_range(_: [f64; 2]) -> [f64; 2] {
 }
 
 /// Returns slightly more than `reach`, to cover all rounding errors of a vector between two points.
-fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
-    let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
-    reach * (1.0 + 1e-9) + most * 1e-12 + MIN_REACH
+fn widen(reach: f64, positions: [Vec2; 2]) -> f64 {
+    let maximum =
+        positions.iter().fold(0.0_f64, |maximum, position| maximum.max(position.x.abs()).max(position.y.abs()));
+    reach * (1.0 + 1e-9) + maximum * 1e-12 + MIN_REACH
 }
 
 /// The minimum reach whose square does not underflow.
@@ -193,12 +194,12 @@ const MIN_REACH: f64 = 1e-150;
 
 /// Returns the rectangle of all points that are at most `reach` from the line between two points, or `None` if it is
 /// empty.
-fn enclosing_rectangle(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
+fn enclosing_rectangle(positions: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;
     }
-    let [one, other] = places;
-    let room = widen(reach, places);
+    let [one, other] = positions;
+    let room = widen(reach, positions);
     let room = Vec2::new(room, room);
     let low = Vec2::new(one.x.min(other.x), one.y.min(other.y)) - room;
     Some(Rectangle { low, high: Vec2::new(one.x.max(other.x), one.y.max(other.y)) + room })

@@ -90,9 +90,9 @@ impl Strips {
     /// Sorts the particles by their current positions. Particles without a finite position are left out.
     pub fn update(&mut self, x: &[f64]) {
         for entry in &mut self.entries {
-            let place = vector_at(x, entry.particle as usize);
-            (entry.row, entry.position) = if place.x.is_finite() && place.y.is_finite() {
-                (row_of(place.y, self.density), place)
+            let position = vector_at(x, entry.particle as usize);
+            (entry.row, entry.position) = if position.x.is_finite() && position.y.is_finite() {
+                (row_of(position.y, self.density), position)
             } else {
                 (i64::MAX, Vec2::new(f64::INFINITY, f64::INFINITY))
             };
@@ -209,15 +209,15 @@ pub fn sort_nearly_sorted<T: Copy>(entries: &mut [T], compare: impl Fn(&T, &T) -
     // In a large scene a few percent of the entries change rows in a step, and pass all entries between.
     let mut moves = 8 * entries.len();
     for index in 1..entries.len() {
-        let (entry, mut place) = (entries[index], index);
-        while place > 0 && compare(&entry, &entries[place - 1]).is_lt() {
+        let (entry, mut slot) = (entries[index], index);
+        while slot > 0 && compare(&entry, &entries[slot - 1]).is_lt() {
             if moves == 0 {
-                entries[place] = entry;
+                entries[slot] = entry;
                 return entries.sort_unstable_by(compare);
             }
-            entries[place] = entries[place - 1];
-            (place, moves) = (place - 1, moves - 1);
+            entries[slot] = entries[slot - 1];
+            (slot, moves) = (slot - 1, moves - 1);
         }
-        entries[place] = entry;
+        entries[slot] = entry;
     }
 }

@@ -41,10 +41,10 @@ impl IntegerPolynomial {
             let (mantissa, exponent) = split_double(value);
             exponent + mantissa.trailing_zeros().cast_signed()
         };
-        let least = list.iter().filter(|value| **value != 0.0).map(lowest).min().unwrap_or(0);
+        let lowest_bit = list.iter().filter(|value| **value != 0.0).map(lowest).min().unwrap_or(0);
         let integer = |&value: &f64| {
             let (mantissa, exponent) = split_double(value);
-            let shift = exponent - least;
+            let shift = exponent - lowest_bit;
             let modulus = if mantissa == 0 {
                 BigInt::ZERO
             } else if shift >= 0 {

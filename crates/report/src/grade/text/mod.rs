@@ -53,15 +53,15 @@ impl Text<'_> {
         let mut text = String::new();
         if self.detail == TextDetail::Table && grades.len() > 1 {
             let unfit = |grade: &Grade| {
-                let why = self.describe_submission_fault(grade)?;
-                Some(format!("{}: {why}\n", table::shorten_name(&to_one_line(&grade.submission))))
+                let fault = self.describe_submission_fault(grade)?;
+                Some(format!("{}: {fault}\n", table::shorten_name(&to_one_line(&grade.submission))))
             };
             return render_table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
         for grade in grades {
             if self.detail == TextDetail::Line {
-                let why = self.describe_submission_fault(grade).map(|unfit| format!(": {unfit}")).unwrap_or_default();
-                let _ = writeln!(text, "{}{why}", self.verdict(grade));
+                let fault = self.describe_submission_fault(grade).map(|unfit| format!(": {unfit}")).unwrap_or_default();
+                let _ = writeln!(text, "{}{fault}", self.verdict(grade));
             } else {
                 self.write_submission(&mut text, grade, grades.len() > 1);
             }
@@ -129,12 +129,12 @@ impl Text<'_> {
             let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
-            let most = if self.detail < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
+            let max_lines = if self.detail < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
             let _ = writeln!(
                 text,
                 "\n{}\n{}",
                 strip_control_characters(&words::build(&build.end)),
-                quote_output(&build.output, most)
+                quote_output(&build.output, max_lines)
             );
         }
         text
@@ -143,12 +143,12 @@ impl Text<'_> {
 
 /// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
 pub fn describe_extra_points(grade: &Grade) -> String {
-    grade.extra_points().map_or_else(String::new, |(reached, most)| {
+    grade.extra_points().map_or_else(String::new, |(reached, max_points)| {
         format!(
             ", {} of {} extra point{}",
             format_points(reached),
-            format_points(most),
-            if format_points(most) == "1" { "" } else { "s" }
+            format_points(max_points),
+            if format_points(max_points) == "1" { "" } else { "s" }
         )
     })
 }

@@ -127,7 +127,7 @@ fn describe_unfinished(keys: &[String]) -> String {
     }
     let reasons = detections.iter().zip(["it logs nothing", "all coefficients are zero"]);
     let detections = reasons.filter(|(names, _)| !names.is_empty());
-    let detections = detections.map(|(names, why)| format!("{} detection ({why})", names.join(", ")));
+    let detections = detections.map(|(names, reason)| format!("{} detection ({reason})", names.join(", ")));
     detections.chain(stages).collect::<Vec<_>>().join("; ")
 }
 

@@ -10,12 +10,12 @@ use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, le
 pub(super) fn describe_evidence(subjects: &[Subject], found: &PolynomialEvidence) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
-    let place = capitalize(&names);
+    let beginning = capitalize(&names);
     match found {
-        PolynomialEvidence::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
+        PolynomialEvidence::Guess(guess) => format!("{beginning}: {}.", describe_guess(guess)),
         PolynomialEvidence::Missing => format!("Polynomials are not passed to the root finder: {names}."),
         PolynomialEvidence::NearlyRight => {
-            format!("{place}: The formula is right, but has more round-off than the rules allow.")
+            format!("{beginning}: The formula is right, but has more round-off than the rules allow.")
         }
         PolynomialEvidence::Nothing => {
             let plural = if subjects.len() > 1 { "s" } else { "" };
@@ -54,8 +54,8 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials are logged per detection"),
         PolynomialDetail::RightUpTo(error) => format!("right up to {error:.0e} of the size of its terms"),
         PolynomialDetail::Differs { subject, power, count, of } => {
-            let place = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();
-            format!("{place}the {} differs in {count} of {of} samples", PowerText(*power))
+            let beginning = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();
+            format!("{beginning}the {} differs in {count} of {of} samples", PowerText(*power))
         }
         PolynomialDetail::Holds(value) => format!("the list always contains only {value}"),
         PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
@@ -121,6 +121,6 @@ fn describe_weight(weight: &Weight) -> String {
         .collect();
     meanings.dedup();
     let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
-    let (place, product) = (PowerText(*power), letters.join(" "));
-    format!("in the {place}, {product} has the factor {actual} instead of {expected}{meanings}")
+    let (power, product) = (PowerText(*power), letters.join(" "));
+    format!("in the {power}, {product} has the factor {actual} instead of {expected}{meanings}")
 }

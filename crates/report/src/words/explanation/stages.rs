@@ -191,9 +191,9 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
                 Amount::Ratio(ratios) => format!("by {} the right amount", describe_ratio(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
-            let (place, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
+            let (kind, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
             let body = name_body(changed);
-            format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
+            format!("{kind}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
         StageDetail::ZoneCount { count, of } => format!("in {count} of {of} zones of the first round"),
         StageDetail::StoppedVelocities(Ratios::All(ratio)) if is_about(*ratio, 1.0) => {

@@ -44,7 +44,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     if 50 * (once + twice) <= missing {
         return "Not written yet: the search for nearby pairs. No pair is reported.".to_owned();
     }
-    let of_fault = |fault: &PairFault<'_>| {
+    let describe_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|pair_trait| pair_trait.description.as_str()).collect();
         let sentence = format!("{} {names} are {}", fault.share, describe_times(fault.times));
@@ -54,7 +54,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
         let all = if fault.traits.iter().all(|pair_trait| pair_trait.exceptions == 0) { "all" } else { "nearly all" };
         format!("{sentence}. In {all} of these, {}", common.join(", or "))
     };
-    let sentences: Vec<String> = faults.iter().map(of_fault).collect();
+    let sentences: Vec<String> = faults.iter().map(describe_fault).collect();
     format!("Near pairs: {}.", sentences.join(". Besides, "))
 }
 
@@ -62,7 +62,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
 /// properties.
 pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairText(pair)));
-    let of_fault = |fault: &PairFault<'_>| {
+    let list_fault = |fault: &PairFault<'_>| {
         let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.counts_by_times[times]).sum::<u64>();
         let (wrong, right) = (sum(fault.times), sum(1));
         let numbers = format!(
@@ -77,7 +77,7 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
     };
-    first.into_iter().chain(faults(wrong).iter().flat_map(of_fault)).collect()
+    first.into_iter().chain(faults(wrong).iter().flat_map(list_fault)).collect()
 }
 
 const fn describe_times(times: usize) -> &'static str {

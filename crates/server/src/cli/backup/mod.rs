@@ -42,8 +42,8 @@ pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     fs::rename(&partial, output).with_context(|| format!("cannot rename {}", partial.display()))?;
     let Artifacts { count, bytes } = manifest.artifacts;
     let tables = manifest.tables;
-    let (place, size) = (output.display(), crate::problem::format_size(bytes));
-    println!("{place}: the database (tables of version {tables}) and {count} artifacts ({size})");
+    let (path, size) = (output.display(), crate::problem::format_size(bytes));
+    println!("{path}: the database (tables of version {tables}) and {count} artifacts ({size})");
     Ok(())
 }
 

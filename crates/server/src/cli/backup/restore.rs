@@ -18,7 +18,7 @@ use std::{
 
 /// Restores a backup into an empty data folder and, for PostgreSQL, an empty database.
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
-    let (place, from) = (&arguments.storage, arguments.backup.as_path());
+    let (storage, from) = (&arguments.storage, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::NEWEST {
         bail!(
@@ -33,22 +33,22 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     if found.digest != manifest.database.sha256 {
         bail!("{} is damaged: its digest is not the one in the manifest", copy.display());
     }
-    if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
-        bail!("{} is not empty; a backup needs an empty data folder", place.data.display());
+    if storage.data.exists() && fs::read_dir(&storage.data)?.next().is_some() {
+        bail!("{} is not empty; a backup needs an empty data folder", storage.data.display());
     }
     let restored = restore_into(arguments, &manifest, &copy).await;
     if restored.is_err() {
         // The data folder was empty before, and an incomplete one is useless.
-        drop(fs::remove_dir_all(&place.data));
+        drop(fs::remove_dir_all(&storage.data));
     }
     restored
 }
 
 /// Copies the artifacts and the database of a backup into an empty data folder.
 async fn restore_into(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) -> Result<()> {
-    let (place, from) = (&arguments.storage, arguments.backup.as_path());
-    let folders = ServiceFolders::open(place)?;
-    let address = folders.database_address(place);
+    let (storage, from) = (&arguments.storage, arguments.backup.as_path());
+    let folders = ServiceFolders::open(storage)?;
+    let address = folders.database_address(storage);
     let is_dump = manifest.database.file == super::POSTGRES_COPY;
     match (&address, is_dump) {
         (Address::Sqlite(file), false) if file.exists() => bail!("the database {} already exists", file.display()),
@@ -64,7 +64,7 @@ async fn restore_into(arguments: &RestoreArguments, manifest: &Manifest, copy: &
         (_, true) => bail!("the backup is from PostgreSQL; name an empty database in FOSSSIM_DATABASE"),
         (_, false) => bail!("the backup is from SQLite; leave out the database's address"),
     }
-    let store = folders.store(place)?;
+    let store = folders.store(storage)?;
     let restored = put_artifacts(&store, &from.join("store").join("sha256")).await?;
     if restored != manifest.artifacts {
         bail!(
@@ -83,7 +83,7 @@ async fn restore_into(arguments: &RestoreArguments, manifest: &Manifest, copy: &
         db::NEWEST => "of this version".to_owned(),
         older => format!("of version {older}; the server updates them to {} when it starts", db::NEWEST),
     };
-    println!("{}: the database (tables {tables}) and {} artifacts", place.data.display(), restored.count);
+    println!("{}: the database (tables {tables}) and {} artifacts", storage.data.display(), restored.count);
     Ok(())
 }
 

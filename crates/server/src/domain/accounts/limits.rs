@@ -141,8 +141,8 @@ impl Member {
             CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE ? > 0), 0) AS {int}) AS server";
         let server = i64::try_from(limits.server).unwrap_or(i64::MAX);
         let row = transaction.one(statement, values![self.account.id, self.course, server]).await?;
-        let usage = |column: &str, most| {
-            row.int(column).map(|bytes| StorageUsage { bytes: u64::try_from(bytes).unwrap_or(0), limit: most })
+        let usage = |column: &str, limit| {
+            row.int(column).map(|bytes| StorageUsage { bytes: u64::try_from(bytes).unwrap_or(0), limit })
         };
         Ok([usage("student", limits.student)?, usage("course", limits.course)?, usage("server", limits.server)?])
     }
@@ -185,13 +185,13 @@ impl StorageUsage {
 
     fn describe(self, whose: &str) -> String {
         let stored = format!("Stored uploads and reports of {whose}: {}", problem::format_size(self.bytes));
-        let most = problem::format_size(self.limit);
+        let limit = problem::format_size(self.limit);
         match self.limit {
             0 => stored + ".",
             _ if self.is_nearly_full() => {
-                format!("{stored} of {most}. When the space is used up, uploads are rejected. Ask the administrator.")
+                format!("{stored} of {limit}. When the space is used up, uploads are rejected. Ask the administrator.")
             }
-            _ => format!("{stored} of {most}."),
+            _ => format!("{stored} of {limit}."),
         }
     }
 }

@@ -20,15 +20,15 @@ impl Throttle {
     /// Takes a token from an account's bucket, and returns whether there was one. A bucket holds at most the tokens of
     /// one minute.
     pub(in crate::domain) fn try_acquire(&self, account: i64, per_minute: u32, now: Instant) -> bool {
-        let most = f64::from(per_minute);
+        let capacity = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let level_now = |(level, at): (f64, Instant)| {
-            (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
+            (level + now.saturating_duration_since(at).as_secs_f64() * capacity / 60.0).min(capacity)
         };
         if buckets.len() > MAX_BUCKETS {
-            buckets.retain(|_, bucket| level_now(*bucket) < most);
+            buckets.retain(|_, bucket| level_now(*bucket) < capacity);
         }
-        let bucket = buckets.entry(account).or_insert((most, now));
+        let bucket = buckets.entry(account).or_insert((capacity, now));
         let level = level_now(*bucket);
         let is_allowed = level >= 1.0;
         *bucket = (if is_allowed { level - 1.0 } else { level }, now);

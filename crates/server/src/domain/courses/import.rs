@@ -50,8 +50,8 @@ fn read_headings(cells: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem
         return Ok(None);
     }
     let mut columns = [None; COLUMNS.len()];
-    for (place, word) in cells.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
-        if find_column(word).is_some_and(|column| columns[column].replace(place).is_some()) {
+    for (index, word) in cells.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
+        if find_column(word).is_some_and(|column| columns[column].replace(index).is_some()) {
             return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
@@ -85,12 +85,12 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             (columns, headings) = (found, cells);
             continue;
         }
-        let is_extra = |(place, word): &(usize, &String)| !word.is_empty() && !columns.contains(&Some(*place));
+        let is_extra = |(index, word): &(usize, &String)| !word.is_empty() && !columns.contains(&Some(*index));
         let extra = cells.iter().enumerate().filter(is_extra);
         // An unknown heading is an error, so that no column is ignored silently.
         let unused: Option<Vec<String>> =
-            extra.map(|(place, _)| headings.get(place).filter(|name| !name.is_empty()).cloned()).collect();
-        let field = |column: usize| columns[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
+            extra.map(|(index, _)| headings.get(index).filter(|name| !name.is_empty()).cloned()).collect();
+        let field = |column: usize| columns[column].and_then(|index| record.get(index)).map(cell).unwrap_or_default();
         // The CSV reader counts the second byte of a line end as part of the next line.
         let offset = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
         let line_ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
@@ -126,9 +126,9 @@ impl Staff {
         }
         let mut transaction = self.begin().await?;
         // Members are added in the order of their logins, so that two simultaneous imports cannot deadlock.
-        let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
-        in_order.sort_by(|one, other| one.login.cmp(&other.login));
-        for line in in_order {
+        let mut sorted_lines: Vec<&mut MemberLine> = lines.iter_mut().collect();
+        sorted_lines.sort_by(|one, other| one.login.cmp(&other.login));
+        for line in sorted_lines {
             self.check_last_event(&mut transaction, ("member", None), &format!("{} ", line.login), seen_event).await?;
             match self.add_member(&mut transaction, &line.login, &line.name, &line.role).await {
                 Ok(link) => line.link = link,

@@ -63,7 +63,7 @@ impl Person {
     pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::find_pending_launch(&mut transaction, self.account.id, secret).await?;
-        let Some(place) = launch::find_course(&mut transaction, pending.platform.id, &pending.arrival).await? else {
+        let Some(course) = launch::find_course(&mut transaction, pending.platform.id, &pending.arrival).await? else {
             let context = &pending.arrival.context;
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
@@ -81,9 +81,9 @@ impl Person {
         };
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
             WHERE course = ? ORDER BY id";
-        let assignments = transaction.all(statement, values![place.course]).await?;
+        let assignments = transaction.all(statement, values![course.course]).await?;
         Ok(LinkTarget::Assignment {
-            course: Course { slug: place.slug, title: place.title },
+            course: Course { slug: course.slug, title: course.title },
             title: pending.arrival.resource.and_then(|resource| resource.title),
             assignments,
         })

@@ -139,8 +139,8 @@ impl RemoteWorker {
             ensure(is_number, Problem::invalid("points and seconds must be numbers"))?;
         }
         let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MAX_POINTS))
-            && !(0.0..=most.min(MAX_POINTS)).contains(&points)
+        if let (Some(points), max_points) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MAX_POINTS))
+            && !(0.0..=max_points.min(MAX_POINTS)).contains(&points)
         {
             return Err(Problem::invalid("points must be between 0 and the maximum"));
         }

@@ -34,8 +34,8 @@ impl App {
             _ => return Err(Problem::not_signed_in()),
         };
         if !self.0.throttle.try_acquire(account.id, self.requests_per_minute, Instant::now()) {
-            let most = self.requests_per_minute;
-            return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
+            let limit = self.requests_per_minute;
+            return Err(Problem::too_many(format!("an account may send {limit} requests in a minute")));
         }
         Ok((account, state))
     }

@@ -153,7 +153,7 @@ impl BestAttempt {
     /// Returns the best attempt in a list of entries `ID TIME POINTS`, which are separated by commas and in any order.
     fn from_list(
         list: &str,
-        by_hand: &HashMap<i64, String>,
+        staff_points: &HashMap<i64, String>,
         policy: &LatePolicy,
         extended_to: Option<i64>,
     ) -> Option<Self> {
@@ -170,11 +170,12 @@ impl BestAttempt {
             let late = policy.lateness(extended_to, arrived_at);
             let is_late = late.is_some();
             let reduced = || late.map_or(points.to_owned(), |late| late.points_left(points));
-            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(reduced));
+            let graded = (points != "-").then(|| staff_points.get(&id).cloned().unwrap_or_else(reduced));
             let attempt = Self { id, points: graded, is_late };
             match best {
                 Some(best)
-                    if value(&best.points).is_some_and(|most| value(&attempt.points).is_none_or(|new| new < most)) =>
+                    if value(&best.points)
+                        .is_some_and(|best_points| value(&attempt.points).is_none_or(|new| new < best_points)) =>
                 {
                     Some(best)
                 }
@@ -193,7 +194,7 @@ async fn read(
     let statement = "SELECT mark.submission, mark.points FROM submission JOIN mark ON mark.submission = submission.id
         WHERE submission.assignment = ? AND mark.points IS NOT NULL";
     let rows = transaction.rows(statement, values![id]).await?;
-    let by_hand = collect_by_id(&rows, |row| Ok((row.int("submission")?, row.text("points")?)))?;
+    let staff_points = collect_by_id(&rows, |row| Ok((row.int("submission")?, row.text("points")?)))?;
     let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
     let rows = transaction.rows(statement, values![id]).await?;
     let own_due: HashMap<i64, i64> = collect_by_id(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
@@ -214,7 +215,8 @@ async fn read(
     let rows = transaction.rows(statement, values![id]).await?;
     let attempts: HashMap<i64, (usize, Option<BestAttempt>)> = collect_by_id(&rows, |row| {
         let account = row.int("account")?;
-        let best = BestAttempt::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
+        let best =
+            BestAttempt::from_list(&row.text("attempts")?, &staff_points, &policy, own_due.get(&account).copied());
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
     let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();

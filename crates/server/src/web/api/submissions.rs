@@ -187,7 +187,7 @@ pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) 
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
-        let by_staff = counts.and_then(|counts| counts.mark.as_ref()).filter(|mark| mark.points.is_some());
+        let staff_mark = counts.and_then(|counts| counts.mark.as_ref()).filter(|mark| mark.points.is_some());
         let or_empty = |text: Option<&String>| text.map(format_points).unwrap_or_default();
         let parts = grade.and_then(|grade| Some(&stored.get(&grade.result)?.parts));
         let points = groups.iter().map(|name| {
@@ -201,7 +201,7 @@ pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) 
             counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
             grade.map(|grade| grade.verdict.clone()).unwrap_or_default(),
             or_empty(grade.and_then(|grade| grade.points.as_ref())),
-            or_empty(by_staff.and_then(|mark| mark.grader_points.as_ref())),
+            or_empty(staff_mark.and_then(|mark| mark.grader_points.as_ref())),
             or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
             grade.map(|grade| calendar::format_iso(grade.created_at)).unwrap_or_default(),
             parts.map(|parts| parts.mistakes.join(" ")).unwrap_or_default(),

@@ -114,7 +114,8 @@ pub(super) async fn begin_login(
 ) -> Result<Response, Problem> {
     let platform = visitor.platform(&login).await?;
     let app = &visitor.app;
-    let framed = headers.get("sec-fetch-dest").is_some_and(|place| place == "iframe" || place == "frame");
+    let framed =
+        headers.get("sec-fetch-dest").is_some_and(|destination| destination == "iframe" || destination == "frame");
     if framed {
         let fields = [
             ("iss", Some(login.iss)),

@@ -100,9 +100,9 @@ pub(super) fn format_size(bytes: &(impl Copy + TryInto<u64>)) -> String {
 /// Formats the points of a grade; a dash if there are no points. Points that staff set are points of the whole grade,
 /// so the maximum of the groups that the reader sees is left out.
 pub(super) fn format_grade_points(submission: &Submission) -> String {
-    let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
-    if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
-        return by_hand.clone();
+    let staff_points = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
+    if let (true, Some(staff_points)) = (submission.is_withheld, staff_points) {
+        return staff_points.clone();
     }
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }

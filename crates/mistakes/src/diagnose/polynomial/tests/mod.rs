@@ -328,12 +328,17 @@ fn wrong_radii_are_named() {
         ("diameters", |r1, r2| 4.0 * (r1 + r2) * (r1 + r2)),
     ];
     for (key, square) in squares {
-        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Named { key: key.into(), has_only_edge_pairs: true }), |motion| {
-            let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
-            let mut lists = edge_lists(motion);
-            lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
-            lists
-        });
+        only(
+            PairKind::ParticleEdge,
+            key,
+            is(PolynomialDetail::Named { key: key.into(), has_only_edge_pairs: true }),
+            |motion| {
+                let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
+                let mut lists = edge_lists(motion);
+                lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
+                lists
+            },
+        );
         only(
             PairKind::ParticleParticle,
             key,

@@ -84,9 +84,9 @@ impl Lists {
             }
         } else {
             for (end, lists) in self.edges.chunks_exact_mut(4).enumerate() {
-                for (list, of_particles) in lists.iter_mut().zip(&self.particles) {
-                    for (place, ends) in list.iter_mut().zip(&bodies.edges) {
-                        *place = of_particles[ends[end]];
+                for (list, particle_values) in lists.iter_mut().zip(&self.particles) {
+                    for (entry, ends) in list.iter_mut().zip(&bodies.edges) {
+                        *entry = particle_values[ends[end]];
                     }
                 }
             }

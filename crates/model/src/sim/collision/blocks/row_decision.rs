@@ -112,12 +112,12 @@ fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row:
     // The number of leading small coefficients; `LENGTH` if all are small.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
-    let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
-    let Some(places) = places.get_mut(..8 * LENGTH) else { return };
+    let Some((size, bytes)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
+    let Some(bytes) = bytes.get_mut(..8 * LENGTH) else { return };
     #[expect(clippy::cast_possible_truncation, reason = "at most six")]
     let count = (LENGTH - dropped) as u32;
     *size = count.to_le_bytes();
-    copy_little_endian(kept, places);
+    copy_little_endian(kept, bytes);
     *used += 4 + 8 * (LENGTH - dropped);
 }
 

@@ -79,8 +79,8 @@ impl PenaltyPairs {
             } else {
                 // Nearly all other pairs are out of reach, which is tested with as few instructions as possible.
                 let (own, radius) = (vector_at(x, i), self.radii[i]);
-                let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
-                for (j, (&other, other_radius)) in others.zip(places) {
+                let bodies = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
+                for (j, (&other, other_radius)) in others.zip(bodies) {
                     if !is_beyond(Vec2::from(other) - own, (radius + other_radius) + self.thickness) {
                         visit(pair(PairKind::ParticleParticle, i, j));
                     }

@@ -78,8 +78,8 @@ impl Sweep {
     pub fn update(&mut self, x: &[f64]) {
         let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, sort_buffers, max_upper_ends, .. } = self;
         let particle = |body: u32| {
-            let place = vector_at(x, body as usize);
-            BodyExtent::from_points(body, [place; 2], radii[body as usize], *has_four_axes)
+            let position = vector_at(x, body as usize);
+            BodyExtent::from_points(body, [position; 2], radii[body as usize], *has_four_axes)
         };
         let edge = |body: u32| {
             let (ends, radius) = edges[body as usize];

@@ -325,8 +325,8 @@ fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
         cells().filter_map(|(.., cell)| if let Row(id) = cell { Some(*id) } else { None }).collect();
     let is_alone = |id: &str| SINGLE_KIND_PREFIXES.iter().any(|(beginning, _)| id.starts_with(beginning));
-    let of_pairs = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && row.pair_kind().is_some());
-    let gaps: Vec<&str> = of_pairs
+    let pair_rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && row.pair_kind().is_some());
+    let gaps: Vec<&str> = pair_rows
         .filter(|row| row.area <= Area::ContactVector && !known.contains(row.id) && !is_alone(row.id))
         .map(|row| row.id)
         .collect();
