@@ -54,7 +54,7 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Creates the outcome for a trace of which no step is judged yet.
+    /// Creates the outcome for a trace before its first step is judged.
     pub fn empty(steps: u32) -> Self {
         Self {
             parity: parity::Judgement::default(),

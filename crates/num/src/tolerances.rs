@@ -127,7 +127,8 @@ pub const FAIR_LOSS_FACTOR: f64 = 4.0;
 pub const FAIR_OUTLIER_DEVIATIONS: f64 = 3.0;
 
 /// Fair: a state cannot be judged if a position or velocity is more than this many times as large as in the reference's
-/// own run. The same holds if the extent of all particles together is more than this many times smaller.
+/// own run. A state cannot be judged either if the extent of all particles together is more than this many times
+/// smaller.
 pub const FAIR_REACH_FACTOR: f64 = (1_u64 << 20) as f64;
 
 /// Fair: a state may deviate by this many times the step's own sensitivity to rounding errors of its inputs.

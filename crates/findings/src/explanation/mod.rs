@@ -38,8 +38,8 @@ pub struct Explanation {
     /// The subject of the explanation, with the facts that a sentence can state without revealing a formula.
     #[serde(rename = "about")]
     pub topic: ExplanationTopic,
-    /// The lines of the exact form, such as the terms of each coefficient and their weights. They may reveal the right
-    /// formula.
+    /// The lines that describe the fault completely, such as the terms of each coefficient and their weights. They may
+    /// reveal the right formula.
     pub details: Vec<Detail>,
     /// The number of samples that the mistake reproduces up to round-off.
     pub reproduced: u64,
@@ -125,7 +125,7 @@ impl Explanation {
         Self::with_topic(Self::OTHER_SCENE, ExplanationTopic::Scene { has_length })
     }
 
-    /// Creates an explanation of wrong polynomials that has no exact form.
+    /// Creates an explanation of wrong polynomials without details.
     pub fn for_wrong_polynomials(subjects: Vec<Subject>, found: PolynomialEvidence) -> Self {
         Self::with_topic(Self::UNEXPLAINED, ExplanationTopic::Polynomials { subjects, found })
     }

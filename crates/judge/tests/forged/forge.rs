@@ -343,8 +343,8 @@ fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
 pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let base = Base::draw(random);
     let (target, change) = (Target::draw(stage, random), Change::draw(random));
-    // A single polynomial with a factor may be the only evidence for dropped coefficients. Among few polynomials it is
-    // sufficient.
+    // A single polynomial that is multiplied by a factor may be the only evidence for dropped coefficients. Among few
+    // polynomials it is sufficient.
     let is_alone = random.below(3) == 0 && stage.steps.len() > FEW;
     let voucher = is_alone.then(|| (Target::draw(stage, random), random.log(-13.0, -6.0)));
     let changed = |step, index, own: &[f64]| {
@@ -362,7 +362,8 @@ pub fn forge(stage: &Stage, random: &mut Random) -> Option<String> {
     let same = |one: &[f64], other: &[f64]| {
         one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
     };
-    // A polynomial with a factor is right, even if the course's library has dropped its small coefficients.
+    // A polynomial that is multiplied by a factor is right, even if the course's library has dropped its small
+    // coefficients.
     let is_of_program = matches!(change, Change::Factor(_));
     let without_reason = (1..=stage.steps.len())
         .flat_map(|step| (0..stage.steps[step - 1].len()).map(move |index| (step, index)))

@@ -199,8 +199,8 @@ pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     Some(Explanation { same_as, ..merge_explanations(reported, traces) })
 }
 
-/// Returns an explanation with the polynomials of all traces that report the same mistake. It has only the exact forms
-/// of the wrong formula that all of these traces allow.
+/// Returns an explanation with the polynomials of all traces that report the same mistake. It has only those details of
+/// the wrong formula that all of these traces allow.
 fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanation {
     let mut reported = reported.clone();
     let statement = reported.statement();
@@ -268,7 +268,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// Returns the exact form of a formula once with each of its alternative weights.
+/// Returns the details of a formula once with each of its alternative weights.
 fn alternative_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

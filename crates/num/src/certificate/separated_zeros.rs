@@ -20,9 +20,9 @@ impl<const LENGTH: usize> PerturbedCoefficients<LENGTH> {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
     }
 
-    /// Performs one step of the division: subtracts the multiple of the divisor that cancels the leading coefficient,
-    /// and shifts by one entry. All entries are computed, because entries after the last stay 0 and code without
-    /// branches processes several together.
+    /// Subtracts the multiple of the divisor that cancels the leading coefficient, and shifts by one entry. This is one
+    /// step of the division. All entries are computed, because entries after the last stay 0 and code without branches
+    /// processes several together.
     #[inline(always)]
     fn subtract(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;

@@ -141,8 +141,8 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// Returns the number of further units of the bounds for which a hit stays a hit, at least 0. It is the smallest of
-    /// the polynomials' values over their bounds, at the best of several times from `first` on. The times are spread
+    /// Returns the number of units by which the bounds can grow while a hit stays a hit, at least 0. It is the smallest
+    /// of the polynomials' values over their bounds, at the best of several times from `first` on. The times are spread
     /// evenly over the rest of the step, and more closely after `first`, because a hit may be short.
     pub(crate) fn hit_slack(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {

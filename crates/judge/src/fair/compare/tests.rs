@@ -56,7 +56,7 @@ fn quickly_accepted_polynomials_are_right() {
         let Some(found) = match_if_clear(&expected, &actual) else { continue };
         if let Some(scale) = found.scale {
             let close = compare_any_kind(&expected, &actual, &[1.0]);
-            // A factor near 1 may have moved lost coefficients to four times the library's bound.
+            // Multiplication by a factor near 1 may have moved lost coefficients to four times the library's bound.
             let has_lost = actual.len() < expected.len();
             assert!(has_lost || close.is_ok(), "{expected:?} {actual:?}");
             assert!((scale / factor - 1.0).abs() < 1e-14 && found.tolerance_share <= FAIR_CLEAR_SHARE, "{found:?}");

@@ -93,7 +93,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
     }
 }
 
-/// A factor near 1 changes nothing important.
+/// Multiplying all polynomials of a trace by a factor near 1 changes nothing important.
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
@@ -233,7 +233,7 @@ const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-eul
     <particle m="1" px="0.3" py="0.5" vx="0.1" vy="1" fixed="0" radius="0.25"/>
     <halfplane px="0" py="0" nx="0" ny="1"/></scene>"#;
 
-/// Polynomials that depend on factors are reported in their own steps.
+/// Polynomials that are right only with some factors are reported in their own steps.
 #[test]
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);

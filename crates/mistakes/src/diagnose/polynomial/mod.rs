@@ -153,8 +153,8 @@ impl WrongPolynomial<'_> {
     }
 }
 
-/// Returns the claims of a guess about a polynomial, one for each possible exact form ([`Explanation::claims`]). The
-/// digest covers the program's formula, not the right one.
+/// Returns the claims of a guess about a polynomial, one for each formula that the guess may mean
+/// ([`Explanation::claims`]). The digest covers the program's formula, not the right one.
 fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
         return vec![format!("{subject:?}/{}/", candidate.guess.claim_key())];
@@ -164,8 +164,8 @@ fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     forms.iter().map(|form| claim_of_form(subject, &candidate.guess, form)).collect()
 }
 
-/// Returns the claim that the program's formula has the exact form `form`. The claim does not contain which
-/// coefficients are wrong, because this follows from the form.
+/// Returns the claim that the program's formula is wrong exactly as the details `form` describe. The claim does not
+/// contain which coefficients are wrong, because this follows from the details.
 pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
     let guess = match guess {
         Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
@@ -202,7 +202,7 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
-/// Returns one detail of the exact form of a guess about `subjects`.
+/// Returns a detail of a guess about `subjects` as part of the explanation.
 fn guess_detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Named { has_only_edge_pairs, .. } = &mut detail {
         *has_only_edge_pairs = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);

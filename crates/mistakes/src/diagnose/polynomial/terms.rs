@@ -323,7 +323,8 @@ impl TermFit<'_> {
         }
     }
 
-    /// Returns the exact forms of the whole polynomial that follow from the coefficients' edits, the likeliest first.
+    /// Returns the lists of details of the whole polynomial that follow from the coefficients' edits, the likeliest
+    /// first.
     fn forms(&self, guesses: &[CoefficientEdits]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
             let edit_lines = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);

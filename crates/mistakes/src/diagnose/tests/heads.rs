@@ -302,7 +302,7 @@ fn an_empty_stage_has_rivals_too() {
     assert_eq!((told.len(), told[0].key.as_str(), &told[0].same_as[..]), (1, "geometric-empty", &[rival][..]));
 }
 
-/// If correct traces contradict a mistake, another one is reported, with its own exact form.
+/// If correct traces contradict a mistake, another one is reported, with its own details.
 #[test]
 fn another_mistake_has_its_own_exact_form() {
     let all = Explanation {

@@ -1,4 +1,4 @@
-//! Writes the sentences of rows. Each sentence describes a slip of a quantity and its exact form.
+//! Writes the sentences of rows. They describe a slip of a quantity, and its changed and right formula.
 use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
