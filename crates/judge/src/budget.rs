@@ -17,8 +17,8 @@ pub(crate) const MIN_WORK: u64 = 1_000_000;
 /// The multiple of the work of the scene's own run that the original's rules may use, in addition to the work that is
 /// allowed for every trace.
 const PARITY_WORK_FACTOR: u64 = 10;
-/// The multiple that the fair rules may use. They repeat a step at most 26 times; the trace of a wrong program needs 11
-/// repetitions.
+/// The multiple of the work of the scene's own run that the fair rules may use. They repeat a step at most 26 times;
+/// the trace of a wrong program needs 11 repetitions.
 const FAIR_WORK_FACTOR: u64 = 40;
 
 /// The work that is left for one trace.

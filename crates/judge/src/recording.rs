@@ -111,7 +111,7 @@ fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }
 
-/// The pair of each polynomial of a step.
+/// The facts about a scene from which the pass and the pair of each polynomial in a record follow.
 struct RecordPlaces {
     pairs: Pairs,
     is_continuous: bool,

@@ -1,11 +1,11 @@
 //! Numbers with a bound on their rounding error, by running error analysis.
 //!
 //! A [`BoundedValue`] is a computed value with a bound. A correct program may evaluate the same formula in any order.
-//! Its result then lies within about `units * u` times the bound of the value, where `u = 2^-53`, to first order. The
-//! rules are those of Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd
-//! ed., section 3.3), with the absolute values of the operands instead of the result's for sums. Canceling terms
-//! therefore keep their weight, and the bound also covers other orders of summation. Bounds are never written to a
-//! trace.
+//! Its result then differs from the value by at most about `units * u` times the bound, where `u = 2^-53`, to first
+//! order. The rules are those of Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, 2nd ed., section 3.3), with the absolute values of the operands instead of the result's for sums.
+//! Canceling terms therefore keep their weight, and the bound also covers other orders of summation. Bounds are never
+//! written to a trace.
 use super::{
     lanes::{Modulus, Number, Plane},
     vector::Vec2,

@@ -27,11 +27,11 @@ pub(crate) struct JudgementBuilder {
     /// The number of polynomials that are identical to the reference's. Approach polynomials of a kind count at most
     /// once per step, because they show nothing for objects at rest.
     identical_polynomials: PairKindMap<[u64; PairKind::MAX_POLYNOMIALS]>,
-    /// The polynomials that depend on the program's factors, step by step.
+    /// The polynomials that are right only with some factors, step by step.
     pending: Vec<StepPending>,
 }
 
-/// The polynomials of one step and kind that depend on the program's factors.
+/// The polynomials of one step and kind that are right only with some factors.
 #[derive(Debug, Clone, Copy)]
 struct StepPending {
     polynomials: PendingPolynomials,

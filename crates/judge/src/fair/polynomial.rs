@@ -59,8 +59,8 @@ pub(super) fn compare_first(
 
 impl StepJudgement {
     /// Records what a polynomial shows about the program. `first` is its comparison with the course's form. If the
-    /// polynomial depends on unknown factors, and its positions are known (`is_known`), it is judged at the end of the
-    /// trace.
+    /// polynomial is right only with some factors, and its positions are known (`is_known`), it is judged at the end of
+    /// the trace.
     pub(super) fn record_evidence(
         &mut self,
         expected: &ExpectedPolynomials,

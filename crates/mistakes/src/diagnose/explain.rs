@@ -73,8 +73,8 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         && find(&explanation.key).is_some_and(|row| is_formula_area(row.area))
         && explanation.is_complete()
     {
-        // If a guess explains all samples of its polynomials, it means the same mistake. Its terms and its example are
-        // added.
+        // A guess that explains all samples of its polynomials means the same mistake as the known one. Its terms and
+        // its example are added.
         let is_reported = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_reported) {
             // The hint for a remedy stays last, and a mistake that is already reported is not repeated.

@@ -63,7 +63,8 @@ impl Follower<'_> {
     }
 }
 
-/// Returns an upper bound of the round-off for the largest positions and displacements, or infinity if it is unknown.
+/// Returns, for each polynomial, an upper bound of its round-off at the largest positions and displacements. A bound is
+/// infinite if it is unknown.
 fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);

@@ -78,8 +78,8 @@ impl<'a> Search<'a> {
         self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
-    /// Returns a set of empty stages after rows were added until it reproduces everything. Returns `None` if it never
-    /// does, if a row can be omitted, or if one of the rows is a correct variant.
+    /// Returns the empty stages `set` together with further rows with which they reproduce everything. Returns `None`
+    /// if no such rows are found, if a row can be omitted, or if one of the rows is a correct variant.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
