@@ -3,7 +3,7 @@
 //!
 //! This crate judges nothing; its caller provides the wrong steps ([`StepRulings`]). It reads the trace again and keeps
 //! at most [`MAX_NUMBERS`] numbers, so the length of the trace is not limited. A step starts from the trace's own state
-//! (oracle-behavior.md 4.2), uses the trace's mid record, and ends where the reference ends from there.
+//! (oracle-behavior.md 4.2), uses the trace's mid record, and ends in the state that the reference computes from it.
 //!
 //! ```
 //! use fosssim_evidence::{KeptPart, examine};

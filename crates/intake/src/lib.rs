@@ -253,7 +253,7 @@ impl ArchiveReader<'_> {
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(READ_OVERHEAD_BYTES * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
-        // The name of the next file, from a header that the library would read whatever its length.
+        // The name of the next file, if a header states it. The library would read such a header whatever its length.
         let mut long_name = None;
         for entry in archive.entries().map_err(describe_damage)?.raw(true) {
             let mut entry = entry.map_err(describe_damage)?;
