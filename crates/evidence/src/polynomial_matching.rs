@@ -111,7 +111,7 @@ mod tests {
         let (kept, dropped): (&[f64], &[f64]) = (&[5e-12, -513600.0], &[-12.84]);
         assert_eq!(matched(&[dropped, b], &[c, kept, b]), [Some(1), Some(2)]);
         assert_eq!(matched(&[a, kept, b], &[dropped, b]), [None, Some(0), Some(1)]);
-        // A wrong polynomial keeps its place, and a factor does not make a polynomial wrong.
+        // A wrong polynomial keeps its position in the list. A polynomial that is multiplied by a factor is not wrong.
         assert_eq!(matched(&[a, b, c, d], &[&[9.0, 9.0], &[30.0, -10.0, 5.0], c]), [Some(0), Some(1), Some(2), None]);
         assert_eq!(matched(&[a], &[]), [None]);
         assert!(matched(&[], &[a]).is_empty());

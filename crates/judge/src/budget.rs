@@ -149,7 +149,7 @@ mod tests {
         judge_with_memory(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
     }
 
-    /// Returns the step at which judging stopped early.
+    /// Returns the step at which judging stopped because of its work, or `None` if it did not.
     fn given_up(outcome: &Outcome) -> Option<u32> {
         match outcome.stop {
             Some(Stop::Step(StepError::Work { step })) => Some(step),

@@ -59,7 +59,7 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         assert!(small.is_minimal, "{mistake}");
         assert_eq!((scene.step_count(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
         assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
-        // The result can be computed by hand, too: 0.375, but no 17 digits.
+        // The result can also be computed by hand, because it is 0.375 and does not have 17 digits.
         let (_, end) = size::simulate(scene).expect("a result");
         let short = |value: &f64| value.to_string().len() < 9;
         assert!(assignment == T1M3 || end.iter().all(short), "{mistake}: {end:?}");

@@ -280,7 +280,7 @@ enum Change {
     Value(f64),
     Constant(f64),
     LeadingZeros(usize),
-    /// The polynomial gets a factor, and the course's library drops small coefficients.
+    /// The polynomial is multiplied by a factor, and the course's library drops small coefficients.
     Factor(f64),
 }
 

@@ -1,4 +1,5 @@
-//! Tests that the fair rules accept a trace only for a valid reason, and that they accept programs with factors.
+//! Tests that the fair rules accept a trace only for a valid reason, and that they accept programs that multiply their
+//! polynomials by factors.
 #![forbid(unsafe_code)]
 mod forge;
 

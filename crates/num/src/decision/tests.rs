@@ -76,7 +76,7 @@ fn particles_that_hit_miss_leave_and_graze() {
     assert_eq!((overlapping.certainty, overlapping.time), (HitCertainty::Hits, Some([0.0; 2])));
 }
 
-/// A decision near its limit changes from Yes over Borderline to No, and the margin tells how far the limit is.
+/// A decision near its limit changes from Yes over Borderline to No, and the margin shows how far away the limit is.
 #[test]
 fn the_decision_is_right_within_its_margin() {
     let at = |gap: f64| decide_pair(&particle_pair([3.0 + gap, 0.0], [-2.0, 0.0], 1.0));

@@ -169,7 +169,8 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     }
 }
 
-/// The polynomials of all steps are empty, except for one that has a factor. It proves nothing about the others.
+/// The polynomials of all steps are empty, except for one that is multiplied by a factor. It proves nothing about the
+/// others.
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {

@@ -225,7 +225,8 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     all
 }
 
-/// Returns the guesses that the student misunderstood something, such as the end positions.
+/// Returns the guesses that the student changed the inputs or the formula in one of the ways of [`NAMED_EDITS`]. An
+/// example is the use of positions at the end of the step.
 fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     let candidate = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;

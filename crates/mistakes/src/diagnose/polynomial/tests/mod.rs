@@ -181,7 +181,7 @@ fn only(
     one.clone()
 }
 
-/// Returns whether a line of the exact form matches.
+/// Returns whether one of the explanation's details matches.
 fn has(one: &Explanation, is_told: impl Fn(&PolynomialDetail) -> bool) -> bool {
     one.details.iter().any(|detail| matches!(detail, Detail::Polynomial(detail) if is_told(detail)))
 }
