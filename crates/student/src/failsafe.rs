@@ -12,7 +12,7 @@ use super::{
     world::World,
 };
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Failsafe];
 
 /// The mistakes in zones that stop or should stop. The other mistakes are made in zones that move.

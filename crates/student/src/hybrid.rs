@@ -7,7 +7,7 @@ use super::{
     zones,
 };
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// The number of rounds that no correct program exceeds in any scene. Some mistakes change the list of zones forever.

@@ -2,7 +2,7 @@
 use super::{Area, Mistake, author::Student, world::StepLog};
 use std::borrow::Cow;
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// Returns the coefficients of the record's polynomial `index`, as logged by this program.

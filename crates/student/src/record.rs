@@ -13,7 +13,7 @@ use super::{
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// The numbers of one record, with this student's mistakes of logging. A list is `None` if scenes of this collision

@@ -10,7 +10,7 @@ use super::{
     world::{World, subtract},
 };
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Response];
 
 /// Returns the factor of the impulse, which is `1 + COR` in a correct program. It is twice its half, because some

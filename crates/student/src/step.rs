@@ -8,7 +8,7 @@ use super::{
 };
 use fosssim_model::scene::Collision;
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// Advances `state` by one step (simulation.md 1). `log` is the log of the previous step; it is emptied first, unless

@@ -8,7 +8,7 @@ use super::{
     world::World,
 };
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// Returns the zone of one contact.

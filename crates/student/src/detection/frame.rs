@@ -3,7 +3,7 @@ use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// The origin of a program whose coordinates are shifted.
@@ -57,7 +57,7 @@ impl Axes {
         }
     }
 
-    /// Returns a difference of points in these axes in the scene's axes.
+    /// Returns, in the scene's axes, a difference of points that is given in these axes.
     pub fn transform_back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = ROTATION;
         match self {

@@ -3,7 +3,7 @@ use fosssim_num::polynomial::Polynomial;
 
 use crate::{Area, Mistake, author::Student, objects::Object, rounding::round_to_f32};
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Returns the polynomials of one pair as the root finder receives them. Small leading coefficients are removed, and

@@ -6,7 +6,7 @@ use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
 
-/// The areas whose deliberate mistakes this module simulates.
+/// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Divides the polynomials as this student's program does. Most programs leave them unchanged.
