@@ -43,10 +43,10 @@ use trials::Trials;
 /// steps are in [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order:
 /// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
-/// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of
-/// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. If the
-/// first record belongs to another scene, the only explanation asks whether the trace belongs to this one
-/// ([`Explanation::OTHER_SCENE`]).
+/// [`Explanation::samples`] and [`Explanation::reproduced`] count wrong steps. Right steps that the mistake would make
+/// wrong exclude it. Traces of any content are accepted. Unreadable parts, damaged records, and bytes after the first
+/// 64 MiB are ignored. If the first record belongs to another scene, the only explanation asks whether the trace
+/// belongs to this one ([`Explanation::OTHER_SCENE`]).
 pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
     explain_kept_steps(&mut reference, scene, scan).explanations
