@@ -12,8 +12,9 @@ use super::{
 const MAX_NEWTON_ITERATIONS: u32 = 100_000;
 
 /// The maximum number of iterations of Newton's method in a program with a mistake. Such a program converges soon or
-/// hardly ever.
-const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 60;
+/// The maximum number of iterations with a mistake. With wrong second derivatives the iterations jump about, and then
+/// converge by chance or reach values that are not finite.
+const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 500;
 
 /// Advances the state by one step without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {

@@ -3,7 +3,7 @@ use super::{
     Explanation,
     explain::is_formula_area,
     joint_explanation::{area_stage, explain_together},
-    known::{is_empty_stage, mistake_is_visible_within},
+    known::{MistakeEffect, find_effect, is_empty_stage},
     naming::alternative_statements,
     non_finite::explain_source,
     sampling::Source,
@@ -84,7 +84,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
     let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
     let work = Cell::new(0);
-    let shows = |scene: &Scene, key: &str| mistake_is_visible_within(scene, key, &work);
+    let shows = |scene: &Scene, key: &str| find_effect(scene, key, &work) == MistakeEffect::Visible;
     // Two mistakes in the same force or integrator, whose keys begin with the same word, are rivals: a program makes
     // one of them.
     let is_rival = |other: &str| concerns_state && other.split('-').next() == key.split('-').next();
@@ -112,7 +112,7 @@ pub fn refuted_keys(
             || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
     };
     let is_denied = |key: &str, work: &Cell<u64>| {
-        right.iter().any(|scene| can_show(scene, key) && mistake_is_visible_within(scene, key, work))
+        right.iter().any(|scene| can_show(scene, key) && find_effect(scene, key, work) != MistakeEffect::Hidden)
     };
     let mut refuted: Vec<String> = assignment.map_or_else(Vec::new, |assignment| supplied_keys(assignment, wrong));
     loop {

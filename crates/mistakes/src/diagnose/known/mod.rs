@@ -21,7 +21,7 @@ mod trials;
 pub use applicable_rows::may_change_trace;
 pub(super) use combinations::is_empty_stage;
 pub use refute::mistake_is_visible;
-pub(super) use refute::mistake_is_visible_within;
+pub(super) use refute::{MistakeEffect, find_effect};
 
 use super::{
     Detail, Explanation,

@@ -3,8 +3,9 @@ use super::{
     applicable_rows::{is_state_mistake, may_change_trace},
     resimulate::{resimulate, step_work},
 };
-use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, find_first_difference, polynomial_matches};
+use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, StepRecords, find_first_difference, polynomial_matches};
 use fosssim_model::{
+    assignments::Integrator,
     scene::{Collision, Scene},
     sim::{RootSearch, Simulation},
 };
@@ -14,22 +15,36 @@ use std::cell::Cell;
 /// The maximum number of computed polynomials. Computing one takes about a microsecond.
 const MAX_WORK: u64 = 200_000;
 
-/// Returns whether the mistake changes a logged value on this scene by more than round-off. Returns `false` if the
-/// search would take too long, or if the course's library does that part of the work. In t2m2 the library responds, so
-/// a program's own impulses show only in `hybrid`.
-pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
-    mistake_is_visible_within(scene, key, &Cell::new(0))
+/// The effect of a mistake on what a program logs for a scene.
+#[derive(PartialEq, Eq)]
+pub(in crate::diagnose) enum MistakeEffect {
+    /// The mistake changes no logged value by more than round-off, or the search for one would take too long.
+    Hidden,
+    /// The mistake changes a logged value.
+    Visible,
+    /// With the mistake, Newton's method does not converge soon, or diverges. Where a program ends its loop is not
+    /// known, so it may log any value.
+    NoResult,
 }
 
-/// Returns whether the mistake is visible on the scene. `work` counts the work of several calls, which is limited
-/// together.
-pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
-    let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else { return false };
+/// Returns whether a program with the mistake would be wrong on this scene by more than round-off. Returns `false` if
+/// the search would take too long, or if the course's library does that part of the work. In t2m2 the library responds,
+/// so a program's own impulses show only in `hybrid`.
+pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
+    find_effect(scene, key, &Cell::new(0)) != MistakeEffect::Hidden
+}
+
+/// Returns the effect of the mistake on the scene, as [`mistake_is_visible`] does. `work` counts the work of several
+/// calls, which is limited together.
+pub(in crate::diagnose) fn find_effect(scene: &Scene, key: &str, work: &Cell<u64>) -> MistakeEffect {
+    let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else {
+        return MistakeEffect::Hidden;
+    };
     if row.area == Area::Response
         && !is_state_mistake(row)
         && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })
     {
-        return false;
+        return MistakeEffect::Hidden;
     }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     // The fair rules also accept the nearest point of an edge, so a different contact vector proves nothing there.
@@ -37,10 +52,11 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut capture = Capture::new(&scene.collision);
     let each = step_work(scene);
+    let is_iterative = scene.integrator == Integrator::ImplicitEuler;
     for _ in 0..scene.step_count() {
         let before = simulation.state().clone();
         if work.get() > MAX_WORK || simulation.step(&mut capture).is_err() {
-            return false;
+            return MistakeEffect::Hidden;
         }
         let expected = &capture.records.end.polynomials;
         work.set(work.get() + each + expected.len() as u64);
@@ -48,13 +64,21 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
             work.set(work.get() + 1);
             index < expected.len() && polynomial_matches(coefficients, expected.get(index), &CLEAR_TOLERANCE)
         };
-        let is_seen = |world: &World| {
+        let find_step_effect = |world: &World| {
             let records = resimulate(world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
-            records.is_none_or(|records| find_first_difference(&capture.records, &records, &CLEAR_TOLERANCE).is_some())
+            let has_result = !is_iterative || records.as_ref().is_some_and(StepRecords::is_finite);
+            match records {
+                _ if !has_result => MistakeEffect::NoResult,
+                Some(records) if find_first_difference(&capture.records, &records, &CLEAR_TOLERANCE).is_none() => {
+                    MistakeEffect::Hidden
+                }
+                _ => MistakeEffect::Visible,
+            }
         };
-        if is_seen(&world) && !is_seen(&accepted) {
-            return true;
+        let effect = find_step_effect(&world);
+        if effect != MistakeEffect::Hidden && find_step_effect(&accepted) == MistakeEffect::Hidden {
+            return effect;
         }
     }
-    false
+    MistakeEffect::Hidden
 }

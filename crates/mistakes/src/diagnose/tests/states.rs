@@ -112,6 +112,31 @@ fn two_rivals_do_not_protect_each_other() {
     assert!(refuted.iter().any(|key| key == "gravitation-own-mass"), "{refuted:?}");
 }
 
+/// With wrong second derivatives Newton's method does not converge on the second scene. Where such a program ends its
+/// loop is not known, so its trace contradicts nothing.
+#[test]
+fn an_endless_iteration_contradicts_no_mistake() {
+    let springs = |integrator: &str, length: &str| {
+        scene(&format!(
+            r#"<scene><duration time="0.5"/><integrator type="{integrator}" dt="0.5"/>
+            <particle m="0.5" px="-0.1" py="0.1" vx="0.6" vy="-0.9" fixed="0" radius="0.1"/>
+            <particle m="1.2" px="0.2" py="0.2" vx="-0.4" vy="1.1" fixed="0" radius="0.1"/>
+            <edge i="0" j="1" radius="0.02"/>
+            <springforce edge="0" k="60" l0="{length}" b="0.3"/>
+            <simplegravity fx="0.3" fy="-3"/></scene>"#
+        ))
+    };
+    let row = find("jacobian-spring-diagonal-only").expect("a row");
+    let program = Student::new(Some(row.mistake));
+    let (linear, newton) = (springs("linearized-implicit-euler", "0.9"), springs("implicit-euler", "0.9"));
+    assert!(student::record_trace(&newton, program).is_err());
+    let named = explain(&linear, &student::record_trace(&linear, program).expect("a trace"));
+    let open = explain(&newton, &right(&springs("implicit-euler", "0.8")));
+    assert!(named[0].key == row.id && open[0].names_stage(), "{named:#?} {open:#?}");
+    let refuted = refuted_keys(None, &[(&linear, &named[..]), (&newton, &open)], &[]);
+    assert!(refuted.is_empty(), "{refuted:?}");
+}
+
 /// The velocity of each particle changes by its force divided by the mass of the first one.
 #[test]
 fn the_mass_of_the_first_particle_divides_all_forces() {
