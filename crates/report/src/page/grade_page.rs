@@ -63,8 +63,6 @@ impl GradePage<'_> {
         let grade = shown.as_ref();
         let causes = group_by_cause(grade);
         let rows: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
-        let has_reader_column =
-            self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
         let is_accepted = rows.iter().all(|(scene, _)| scene.verdict.is_accepted());
         let content = GradeContent {
             page: self,
@@ -73,8 +71,7 @@ impl GradePage<'_> {
             has_scenes: grade.submission_fault().is_none(),
             has_groups: grade.submission_fault().is_none() || grade.points > Some(0.0),
             is_accepted,
-            has_reader_column,
-            columns: 4 + usize::from(has_reader_column) + usize::from(!is_accepted),
+            columns: 4 + usize::from(!is_accepted),
             cause_sizes: causes.iter().map(Vec::len).collect(),
             listed: rows,
         };
@@ -102,7 +99,6 @@ struct GradeContent<'a> {
     /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
     is_accepted: bool,
     /// Whether the table of groups has a column with the readers of each group.
-    has_reader_column: bool,
     columns: usize,
 }
 
@@ -200,13 +196,13 @@ fn build_output(build: &Build) -> String {
     render_output("What it printed", &build.output, true, &mut OUTPUT_BUDGET.clone())
 }
 
-/// Describes who sees groups with this visibility.
-const fn describe_readers(visibility: Visibility) -> &'static str {
+/// Describes how the suite hides groups with this visibility; empty if it does not.
+const fn describe_visibility(visibility: Visibility) -> &'static str {
     match visibility {
-        Visibility::Visible => "everybody",
-        Visibility::Hidden => "staff",
-        Visibility::AfterDueDate => "students after the due date",
-        Visibility::AfterPublished => "students once grades are out",
+        Visibility::Visible => "",
+        Visibility::Hidden => "hidden by the suite",
+        Visibility::AfterDueDate => "hidden by the suite until the due date",
+        Visibility::AfterPublished => "hidden by the suite until grades are out",
     }
 }
 
