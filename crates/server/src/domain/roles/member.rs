@@ -52,9 +52,11 @@ impl Member {
     }
 
     /// Returns an assignment as this member may see it. A suite that was uploaded to the course is hidden from
-    /// students.
+    /// students, with the name of the suite that it replaced.
     fn hide_course_suite(&self, mut assignment: Assignment) -> Assignment {
-        assignment.settings.suite_archive.take_if(|_| !self.is_staff);
+        if !self.is_staff && assignment.settings.suite_archive.take().is_some() {
+            assignment.settings.suite.clear();
+        }
         assignment
     }
 

@@ -48,6 +48,8 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
         let told = ada.get(&door).expect(200).text();
         assert!(!told.contains(&digest[..12]), "{door}: {told}");
     }
+    // The suite that the uploaded one replaced, with other groups and points, is not shown in its place.
+    assert_eq!(ada.get(path).expect(200).json()["settings"]["suite"], "");
     // The digest gives no access elsewhere, neither in settings nor in a regrade, and neither does the digest of
     // another upload.
     let upload = fosssim_server::store::Digest::from_bytes(&program("WA", 1)).to_string();
