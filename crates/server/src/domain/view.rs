@@ -231,12 +231,17 @@ pub struct Event {
 
 impl Event {
     /// Returns whether the same person caused both events within a second, such as an import that adds two members.
-    /// Their texts may differ in the first word only.
+    /// Their texts may differ in the first word only. Results of a regrade are similar if they are at most a minute
+    /// apart.
     pub(crate) fn is_similar(&self, other: &Self) -> bool {
         let end = |event: &Self| event.text.split_once(' ').map(|(_, end)| end.to_owned());
         let subject = |event: &Self| (event.actor.clone(), event.course.clone(), event.kind.clone(), end(event));
-        let is_close = self.happened_at.abs_diff(other.happened_at) < 1000;
-        is_close && self.actor.is_some() && subject(self) == subject(other)
+        let distance = self.happened_at.abs_diff(other.happened_at);
+        let is_preview = |event: &Self| event.kind == "previewed";
+        match is_preview(self) && is_preview(other) {
+            true => distance < 60_000 && (&self.course, &self.assignment) == (&other.course, &other.assignment),
+            false => distance < 1000 && self.actor.is_some() && subject(self) == subject(other),
+        }
     }
 }
 
