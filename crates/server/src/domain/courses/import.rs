@@ -55,8 +55,13 @@ fn read_headings(cells: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem
             return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
-    ensure(columns[1].is_some(), Problem::invalid("the first line names columns, but not login"))?;
-    Ok(Some(columns))
+    match columns {
+        [Some(_), Some(_), ..] => Ok(Some(columns)),
+        [name, _, ..] => {
+            let (missing, found) = (COLUMNS[usize::from(name.is_some())][0], cells.join(", "));
+            Err(Problem::invalid(format!("no column is called {missing}, only {found}")))
+        }
+    }
 }
 
 /// Reads a table. Errors are reported in the lines that contain them.
@@ -159,7 +164,7 @@ mod tests {
         assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
         let others = lines("User name;E-Mail;NAME;\nada;ada@example.org;Ada\n");
         assert_eq!((others[0].login.as_str(), others[0].email.as_str()), ("ada", "ada@example.org"));
-        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Login\nada,Ada,eve\n"] {
+        for bad in ["Name,Email\nAda,a@b\n", "Vorname,Login\nAda,ada\n", "Login,Name,Login\nada,Ada,eve\n"] {
             assert!(read(bad).is_err(), "{bad}");
         }
         let more = lines("Login,Name,Number,Group\nada,Ada,7,\n");
