@@ -225,7 +225,8 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns whether any submission to an assignment was graded by a suite that hides groups.
+    /// Returns whether the suite that graded any submission to an assignment hides groups. Only results that count
+    /// are considered.
     ///
     /// # Errors
     ///
@@ -233,7 +234,8 @@ impl Staff {
     pub async fn is_hidden(&self, assignment: &Assignment) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         // Results of older versions may contain the hidden parts, too.
-        let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
+        let statement = "SELECT result.id FROM submission JOIN grade ON grade.submission = submission.id
+            JOIN result ON result.id = grade.result
             WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
             LIMIT 1";
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())

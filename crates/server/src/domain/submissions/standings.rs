@@ -9,6 +9,7 @@ use crate::{
     late_policy::LatePolicy,
     problem::Problem,
     values,
+    visible_grade::GradeParts,
 };
 use serde::Serialize;
 use std::{
@@ -61,8 +62,8 @@ pub struct CountedSubmission {
     pub is_late: bool,
     /// The maximum number of points of the suite.
     pub max_points: Option<String>,
-    /// The result in one line.
-    pub summary: String,
+    /// The likely mistakes, or the reason why the program was stopped or not run.
+    pub mistakes: Vec<String>,
 }
 
 /// The standings that simultaneous requests share, by the assignment's ID.
@@ -220,7 +221,8 @@ async fn read(
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
     let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
-    let statement = "SELECT grade.submission, submission.digest, result.code, result.max_points, result.summary
+    let statement = "SELECT grade.submission, submission.digest, result.code, result.max_points, result.summary,
+            result.parts
         FROM {each} JOIN grade ON grade.submission = CAST(wanted.value AS {int})
         JOIN submission ON submission.id = grade.submission JOIN result ON result.id = grade.result";
     let rows = transaction.rows(statement, values![serde_json::to_string(&counted).unwrap_or_default()]).await?;
@@ -237,13 +239,24 @@ async fn read(
                 code: grade.map(|grade| grade.text("code")).transpose()?,
                 digest: grade.map(|grade| grade.text("digest")).transpose()?.unwrap_or_default(),
                 max_points: grade.map(|grade| grade.maybe_text("max_points")).transpose()?.flatten(),
-                summary: grade.map(|grade| grade.text("summary")).transpose()?.unwrap_or_default(),
+                mistakes: grade.map(|grade| read_mistakes(grade)).transpose()?.unwrap_or_default(),
             })
         });
         let (login, name, counts) = (row.text("login")?, row.text("name")?, counts.transpose()?);
         standings.insert(login.clone(), ShortStanding { login, name, submissions, counts });
     }
     Ok(standings.into_values().collect())
+}
+
+/// Returns the likely mistakes of a result, or the other reason that its summary names.
+fn read_mistakes(grade: &Row) -> Result<Vec<String>, DbError> {
+    let parts = grade.maybe_text("parts")?.and_then(|parts| serde_json::from_str::<GradeParts>(&parts).ok());
+    let summary = grade.text("summary")?;
+    let reason = summary.split_once("; ").map(|(_, reason)| reason.to_owned());
+    Ok(parts
+        .map(|parts| parts.mistakes)
+        .filter(|list| !list.is_empty())
+        .unwrap_or_else(|| reason.into_iter().collect()))
 }
 
 fn collect_by_id<'a, T>(

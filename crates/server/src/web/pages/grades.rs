@@ -85,7 +85,7 @@ impl GradesQuery {
     fn select_page(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let search = self.q.trim().to_lowercase();
         let made_mistake =
-            |row: &ShortStanding| row.counts.as_ref().and_then(statistics::likely_mistake) == Some(&*self.mistake);
+            |row: &ShortStanding| row.counts.as_ref().is_some_and(|counts| counts.mistakes.contains(&self.mistake));
         let is_selected = |standing: &&ShortStanding| {
             (standing.login.contains(&search) || standing.name.to_lowercase().contains(&search))
                 && statistics::is_in_section(standing, &self.section)

@@ -34,11 +34,6 @@ pub(super) fn is_in_section(standing: &ShortStanding, part: &str) -> bool {
     }
 }
 
-/// Returns the likely mistake that a submission's one-line summary names.
-pub(super) fn likely_mistake(counts: &CountedSubmission) -> Option<&str> {
-    counts.summary.split_once("; ").map(|(_, mistake)| mistake)
-}
-
 /// Students with a common value, such as a mistake: the value, their logins and names, and the number of an example
 /// among their submissions.
 pub(super) type StudentCluster = (String, Vec<(String, String)>, i64);
@@ -73,8 +68,8 @@ impl Statistics {
             section_counts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
             mean_and_median: points.map(|count| (format_points(mean(count)), format_points(middle(count)))),
             histogram: histogram::render_histogram(shares.iter().map(|share| share / 100.0)),
-            mistakes: find_clusters(standings, likely_mistake),
-            duplicates: find_clusters(standings, |row| Some(row.digest.as_str()).filter(|digest| !digest.is_empty()))
+            mistakes: find_clusters(standings, |row| &row.mistakes),
+            duplicates: find_clusters(standings, |row| (!row.digest.is_empty()).then_some(&row.digest))
                 .into_iter()
                 .filter(|(_, students, _)| students.len() > 1)
                 .collect(),
@@ -94,15 +89,18 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
     (max_points > 0.0).then(|| (100.0 * points / max_points).clamp(0.0, 100.0))
 }
 
-/// Groups students by the value that `key` returns for their submissions. The largest groups are first.
-fn find_clusters(standings: &[ShortStanding], key: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<StudentCluster> {
+/// Groups students by the values that `keys` returns for their submissions. The largest groups are first.
+fn find_clusters<'a, K: IntoIterator<Item = &'a String>>(
+    standings: &'a [ShortStanding],
+    keys: impl Fn(&'a CountedSubmission) -> K,
+) -> Vec<StudentCluster> {
     let mut found: BTreeMap<&str, StudentCluster> = BTreeMap::new();
     for standing in standings {
-        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, key(counts)?))) else {
-            continue;
-        };
-        let student = (standing.login.clone(), standing.name.clone());
-        found.entry(name).or_insert_with(|| (name.to_owned(), Vec::new(), counts.id)).1.push(student);
+        let Some(counts) = &standing.counts else { continue };
+        for key in keys(counts) {
+            let student = (standing.login.clone(), standing.name.clone());
+            found.entry(key).or_insert_with(|| (key.clone(), Vec::new(), counts.id)).1.push(student);
+        }
     }
     let mut found: Vec<StudentCluster> = found.into_values().collect();
     found.sort_by_key(|(_, students, _)| Reverse(students.len()));
