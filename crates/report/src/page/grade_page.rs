@@ -98,7 +98,7 @@ struct GradeContent<'a> {
     has_groups: bool,
     /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
     is_accepted: bool,
-    /// Whether the table of groups has a column with the readers of each group.
+    /// The number of columns of the table of groups.
     columns: usize,
 }
 
