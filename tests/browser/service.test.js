@@ -150,7 +150,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   const table = { name: "class.csv", mimeType: "text/csv", buffer: Buffer.from("Login,Name,Group\neve,Eve,7\n") };
   await page.getByRole("link", { name: "Import a class" }).click();
   await page.getByLabel("Table").setInputFiles(table);
-  await page.getByRole("button", { name: "Preview" }).click();
+  await page.getByRole("button", { name: "Preview the file" }).click();
   await page.getByText("Columns that are not used: Group.").waitFor();
   await checkAccessibility(page);
   await page.getByRole("button", { name: "Import these members" }).click();
