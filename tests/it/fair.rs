@@ -3,7 +3,7 @@ use super::{corpus, judging};
 use fosssim_oracle::{
     judge::{
         FindingKind, Overall,
-        fair::{FairVerdict, Form, Judgement},
+        fair::{FairVerdict, Form, Judgment},
         replay::{Options, judge},
     },
     num::polynomial::Polynomial,
@@ -41,7 +41,7 @@ pub fn rows(kind: student::RowKind) -> Vec<&'static Row> {
     CATALOGUE.iter().filter(|row| row.kind == kind).collect()
 }
 
-fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgement) {
+fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgment) {
     let outcome = judge(scene, trace, &Options { threads, uses_fair_rules: true, ..Options::default() }, &mut ());
     (outcome.parity.overall, *outcome.fair.expect("the fair rules were asked"))
 }

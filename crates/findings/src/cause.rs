@@ -1,4 +1,4 @@
-//! The rules of the original that lead to different judgements of a trace by the two rule books.
+//! The rules of the original that lead to different judgments of a trace by the two rule books.
 //!
 //! The original's rules are described in oracle-behavior.md 4 to 6, and numerics.md 1 explains why they can't be
 //! trusted.

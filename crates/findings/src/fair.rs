@@ -1,4 +1,4 @@
-//! The judgement of a trace by the fair rules (numerics.md 2).
+//! The judgment of a trace by the fair rules (numerics.md 2).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::{Pair, Pass};
 use serde::{Deserialize, Serialize};
@@ -87,9 +87,9 @@ impl Shares {
     }
 }
 
-/// The judgement of a trace by the fair rules.
+/// The judgment of a trace by the fair rules.
 #[derive(Debug, Clone, Default)]
-pub struct Judgement {
+pub struct Judgment {
     /// The verdict by the fair rules.
     pub verdict: FairVerdict,
     /// The reason why the whole trace is rejected, if there is one.

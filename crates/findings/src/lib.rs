@@ -1,4 +1,4 @@
-//! Data types for the judgement of a submission: findings, the outcome of judging a trace by both rule books,
+//! Data types for the judgment of a submission: findings, the outcome of judging a trace by both rule books,
 //! explanations, results of scenes and grades.
 //!
 //! Every fact has one type, which all crates use: `judge` and `mistakes` create the values, `grading` stores them,

@@ -32,10 +32,10 @@ pub use fosssim_model::trace::TraceError as Damage;
 /// The result of judging one trace.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The judgement of the trace by the original's rules.
-    pub parity: parity::Judgement,
-    /// The judgement of the trace by the fair rules, if it was requested.
-    pub fair: Option<Box<fair::Judgement>>,
+    /// The judgment of the trace by the original's rules.
+    pub parity: parity::Judgment,
+    /// The judgment of the trace by the fair rules, if it was requested.
+    pub fair: Option<Box<fair::Judgment>>,
     /// The number of steps that were judged.
     pub steps_judged: u32,
     /// The number of steps of the scene.
@@ -57,7 +57,7 @@ impl Outcome {
     /// Creates the outcome for a trace before its first step is judged.
     pub fn empty(steps: u32) -> Self {
         Self {
-            parity: parity::Judgement::default(),
+            parity: parity::Judgment::default(),
             fair: None,
             steps_judged: 0,
             steps,

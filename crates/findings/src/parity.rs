@@ -1,4 +1,4 @@
-//! The judgement of a trace by the original's rules, which compare it step by step with the reference
+//! The judgment of a trace by the original's rules, which compare it step by step with the reference
 //! (oracle-behavior.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::StepError;
@@ -52,9 +52,9 @@ impl Residuals {
     }
 }
 
-/// The judgement of a trace by the original's rules.
+/// The judgment of a trace by the original's rules.
 #[derive(Debug, Clone, Default)]
-pub struct Judgement {
+pub struct Judgment {
     /// The original's verdict. It is `None` if judging stopped early.
     pub overall: Overall,
     /// The residuals. They also exist if judging stopped early.
@@ -68,7 +68,7 @@ pub struct Judgement {
     pub endless_step: Option<StepError>,
 }
 
-impl Judgement {
+impl Judgment {
     /// Sets the verdict (oracle-behavior.md 6). If judging stopped early, there is none.
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();

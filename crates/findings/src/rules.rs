@@ -156,14 +156,14 @@ mod tests {
     }
 
     #[test]
-    fn without_a_fair_judgement_parity_speaks_for_both() {
+    fn without_a_fair_judgment_parity_speaks_for_both() {
         let mut outcome = Outcome::empty(3);
         outcome.parity.findings.wrong_steps = 2;
         outcome.parity.overall = Overall::Failed;
         assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer);
         assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 2);
-        let judgement = fair::Judgement { verdict: fair::FairVerdict::Accepted, ..Default::default() };
-        outcome.fair = Some(Box::new(judgement));
+        let judgment = fair::Judgment { verdict: fair::FairVerdict::Accepted, ..Default::default() };
+        outcome.fair = Some(Box::new(judgment));
         assert_eq!(outcome.ruling(Book::Fair), Ruling::Accepted);
         assert_eq!(outcome.findings_by(Book::Fair).wrong_steps, 0);
         assert_eq!(outcome.ruling(Book::Parity), Ruling::WrongAnswer);

@@ -13,7 +13,7 @@ pub use super::{
 
 use super::{
     budget::Budget,
-    fair::{self, Context, ExtraordinarySteps, JudgementBuilder, Records, StepJudgement},
+    fair::{self, Context, ExtraordinarySteps, JudgmentBuilder, Records, StepJudgment},
     finding::FindingDetail,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
@@ -57,7 +57,7 @@ struct StepSlot {
     end: LenientFrame,
     damage: Option<Damage>,
     result: StepResult,
-    fair_judgement: StepJudgement,
+    fair_judgment: StepJudgment,
     /// Whether the fair rules need the reference's own run.
     is_extraordinary: bool,
     /// Whether the reference's own run must be known before the step is judged.
@@ -144,8 +144,8 @@ struct Replay<'a, R> {
     damage: Option<Damage>,
     /// Whether the first record, or a record of the delivered steps, is damaged.
     has_damage: bool,
-    /// The judgement of the fair rules so far, if they judge.
-    judging: Option<Box<JudgementBuilder>>,
+    /// The judgment of the fair rules so far, if they judge.
+    judging: Option<Box<JudgmentBuilder>>,
     outcome: Outcome,
 }
 
@@ -257,8 +257,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.read_frame(&mut frame, &mut damage)?;
         self.has_damage = damage.is_some();
         self.outcome.damage = damage;
-        if let (false, Some(context), Some(judgement)) = (self.has_damage, self.step_rules.fair, &mut self.judging) {
-            judgement.add_initial(&fair::judge_initial_record(&context, &frame));
+        if let (false, Some(context), Some(judgment)) = (self.has_damage, self.step_rules.fair, &mut self.judging) {
+            judgment.add_initial(&fair::judge_initial_record(&context, &frame));
         }
         self.state = frame.state;
         Ok(())
@@ -370,22 +370,22 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if slot.result.counts.total() > 0 && !self.has_damage {
                 outcome.parity.findings.wrong_steps += 1;
             }
-            let is_right = slot.result.first_findings.is_empty() && slot.fair_judgement.findings.is_empty();
+            let is_right = slot.result.first_findings.is_empty() && slot.fair_judgment.findings.is_empty();
             if !is_right && !self.has_damage {
                 let parity = StepFindings {
                     first_findings: &slot.result.first_findings,
                     further_counts: slot.result.further_counts(),
                 };
                 let fair = StepFindings {
-                    first_findings: &slot.fair_judgement.findings,
-                    further_counts: slot.fair_judgement.further_counts,
+                    first_findings: &slot.fair_judgment.findings,
+                    further_counts: slot.fair_judgment.further_counts,
                 };
                 progress.observe_wrong_step(&WrongStep { step: slot.step, parity, fair });
             }
             slot.mid.shrink();
             slot.end.shrink();
             let is_hopeless = match options.stopping_book {
-                Book::Fair if self.judging.is_some() => !slot.fair_judgement.findings.is_empty(),
+                Book::Fair if self.judging.is_some() => !slot.fair_judgment.findings.is_empty(),
                 Book::Parity | Book::Fair => slot.result.counts.total() > 0,
             };
             if is_hopeless && options.stop_at_first {
@@ -399,7 +399,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn deliver_fair(&mut self, slot: &mut StepSlot) {
         let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.step_rules.fair, &mut self.reach)
         else {
-            slot.fair_judgement = StepJudgement::default();
+            slot.fair_judgment = StepJudgment::default();
             return;
         };
         let step = slot.step;
@@ -411,23 +411,23 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         if let Some(error) = slot.error {
             // If the reference's own run has no result either, the fair rules cannot judge the step.
             has_judged &= reach.advance_to(step);
-            slot.fair_judgement = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
+            slot.fair_judgment = StepJudgment::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
-            let judgement = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgement));
+            let judgment = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgment));
             let identical = slot.result.is_identical;
-            let (mut judged, mut work) = reach.judge(context, records, identical, judgement, budget.remaining());
+            let (mut judged, mut work) = reach.judge(context, records, identical, judgment, budget.remaining());
             if work > budget.remaining() && budget.extend() {
                 (judged, work) = reach.judge(context, records, identical, None, budget.remaining());
             }
             has_judged = budget.spend(work);
-            slot.fair_judgement = judged;
+            slot.fair_judgment = judged;
         }
         if has_judged {
-            judging.add(&slot.fair_judgement);
+            judging.add(&slot.fair_judgment);
         } else {
             judging.stop_judging(step);
             self.step_rules.fair = None;
-            slot.fair_judgement = StepJudgement::default();
+            slot.fair_judgment = StepJudgment::default();
         }
     }
 }

@@ -285,7 +285,7 @@ mod tests {
             Residuals { accumulated_position: 0.002_828_427, maximum_position: 1e-10, ..Default::default() };
         let collisions_passed = (overall != Overall::None).then_some(false);
         Outcome {
-            parity: parity::Judgement { overall, residuals, collisions_passed, ..Default::default() },
+            parity: parity::Judgment { overall, residuals, collisions_passed, ..Default::default() },
             steps_judged: 0,
             steps: 0,
             collisions: fosssim_model::assignments::CollisionType::None,

@@ -95,7 +95,7 @@ fn find_reason(scene: &Scene, observation: &Observation) -> Option<(WrongReason,
     }
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let outcome = judge(scene, &observation.trace[..], &options, &mut ());
-    // A judgement that takes too much work stops as well, but this is not a fault of the trace.
+    // A judgment that takes too much work stops as well, but this is not a fault of the trace.
     let is_unreadable = matches!(outcome.stop, Some(Stop::Trace { .. }));
     if is_unreadable || outcome.damage.is_some() || outcome.trailing_bytes {
         return Some((WrongReason::BrokenTrace, None));

@@ -115,7 +115,7 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
 /// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, although
 /// the trace is whole.
 #[test]
-fn a_judgement_that_stops_is_no_broken_trace() {
+fn a_judgment_that_stops_is_no_broken_trace() {
     let posts = |y: f64, fixed: u8| {
         let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
         let text = format!(

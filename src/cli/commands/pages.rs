@@ -119,7 +119,7 @@ const RECORDING_NOTE: &str = "The verdict compares with the recording, where nea
     wrong by themselves, and which only follow from others.";
 
 /// Draws the card of a graded scene. If the trace was compared with a recording, each step is judged again for the
-/// card, from the trace's own state. Returns `None` if the hints show only the verdict, or if this judgement fails.
+/// card, from the trace's own state. Returns `None` if the hints show only the verdict, or if this judgment fails.
 pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;

@@ -4,7 +4,7 @@
 //! oracle-behavior.md 4 to 6; numerics.md 1 shows why they cannot be trusted.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
-    fair::{FairRefusal, FairVerdict, Form, Judgement},
+    fair::{FairRefusal, FairVerdict, Form, Judgment},
 };
 use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
@@ -20,17 +20,17 @@ pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
 }
 
 /// Returns the reason why parity rejects a trace that fair accepts.
-fn explain_parity_rejection(outcome: &Outcome, judgement: &Judgement) -> Cause {
+fn explain_parity_rejection(outcome: &Outcome, judgment: &Judgment) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Only some borderline decisions are kept as examples, so this one may be missing.
-    let is_borderline = judgement.borderline > judgement.borderline_examples.len() as u64
-        || judgement.borderline_examples.iter().any(|decision| decision.step == first.step);
+    let is_borderline = judgment.borderline > judgment.borderline_examples.len() as u64
+        || judgment.borderline_examples.iter().any(|decision| decision.step == first.step);
     match &first.detail {
         FindingDetail::Coefficient { place, .. } if is_approach_of_edge(place.role, place.pair.kind) => {
-            if judgement.form == Form::Right { Cause::ApproachForm } else { Cause::AbsoluteCoefficients }
+            if judgment.form == Form::Right { Cause::ApproachForm } else { Cause::AbsoluteCoefficients }
         }
         FindingDetail::PolynomialDegree { place, .. }
-            if judgement.form == Form::Right && is_approach_of_edge(place.role, place.pair.kind) =>
+            if judgment.form == Form::Right && is_approach_of_edge(place.role, place.pair.kind) =>
         {
             Cause::ApproachForm
         }
@@ -41,7 +41,7 @@ fn explain_parity_rejection(outcome: &Outcome, judgement: &Judgement) -> Cause {
         _ if is_borderline => Cause::BorderlineDecision,
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
         // If round-off cannot change the decision, the cause is the right form of the approach polynomial.
-        _ if judgement.form == Form::Right => Cause::ApproachForm,
+        _ if judgment.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
     }
 }
@@ -51,13 +51,13 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 }
 
 /// Returns the reason why parity accepts a trace that fair rejects.
-fn explain_parity_acceptance(outcome: &Outcome, judgement: &Judgement) -> Cause {
-    match judgement.refusal {
+fn explain_parity_acceptance(outcome: &Outcome, judgment: &Judgment) -> Cause {
+    match judgment.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
-        Some(FairRefusal::TrailingBytes) if judgement.findings.counts.total() == 0 => return Cause::TrailingBytes,
+        Some(FairRefusal::TrailingBytes) if judgment.findings.counts.total() == 0 => return Cause::TrailingBytes,
         _ => {}
     }
-    let Some(first) = &judgement.findings.first_divergence else { return Cause::SmallErrors };
+    let Some(first) = &judgment.findings.first_divergence else { return Cause::SmallErrors };
     if first.step == 0 {
         return Cause::FirstRecord;
     }

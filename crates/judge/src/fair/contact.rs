@@ -3,7 +3,7 @@ use super::{
     context::{Context, Records},
     formulas::{BoundedPairMotion, ExpectedPolynomials},
     ordinary_range::largest_size,
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
 };
 use crate::finding::{Finding, FindingDetail};
 use fosssim_model::{
@@ -90,7 +90,7 @@ pub(super) fn compare_hit(
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     own: Impulse,
     actual: &LoggedImpulse,
-    judged: &mut StepJudgement,
+    judged: &mut StepJudgment,
 ) -> Option<FindingDetail> {
     if actual.time != own.time {
         let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, evaluate));
@@ -113,7 +113,7 @@ pub(super) fn compare_possible_hit(
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     pair: Pair,
     actual: &LoggedImpulse,
-    judged: &mut StepJudgement,
+    judged: &mut StepJudgment,
 ) -> Option<FindingDetail> {
     let Some((motion, expected)) = known else {
         // An overlap at the end of the step has no time of impact, and its normal is computed at the end.
@@ -153,7 +153,7 @@ fn compare_normal(
     expected: Impulse,
     tolerance: f64,
     actual: &LoggedImpulse,
-    judged: &mut StepJudgement,
+    judged: &mut StepJudgment,
 ) -> Option<FindingDetail> {
     let residual = length(actual.normal - expected.normal);
     if !(residual <= tolerance) {
@@ -210,7 +210,7 @@ impl<'a> Tolerances<'a> {
 /// Compares a logged state with the reference's. A wrong velocity is not reported if the position is wrong, because
 /// both have the same cause.
 pub(super) fn compare_states(
-    judged: &mut StepJudgement,
+    judged: &mut StepJudgment,
     frame: u64,
     own: &State,
     logged: &State,

@@ -38,14 +38,14 @@ mod context;
 mod factors;
 mod follower;
 pub mod formulas;
-mod judgement;
+mod judgment;
 mod ordinary_range;
 mod pending_polynomials;
 mod polynomial;
 mod probe;
 mod reach;
 mod step;
-mod step_judgement;
+mod step_judgment;
 #[cfg(test)]
 mod tests;
 mod unapplied_pairs;
@@ -56,11 +56,11 @@ pub use contact::certain_decision;
 pub(super) use context::{Context, Records};
 pub use fosssim_findings::{
     Cause,
-    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
+    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgment, Shares},
 };
-pub(super) use judgement::JudgementBuilder;
+pub(super) use judgment::JudgmentBuilder;
 pub(super) use probe::{PERTURBED_RUNS, perturb};
 pub(super) use reach::ExtraordinarySteps;
 pub(super) use step::{judge_initial_record, judge_records};
-pub(super) use step_judgement::StepJudgement;
+pub(super) use step_judgment::StepJudgment;
 pub use unapplied_pairs::count_applications;

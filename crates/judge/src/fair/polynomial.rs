@@ -7,7 +7,7 @@ use super::{
     },
     formulas::ExpectedPolynomials,
     pending_polynomials::{NO_FACTORS, PendingCause, PendingPolynomials},
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
 use fosssim_findings::fair::Form;
@@ -30,9 +30,9 @@ pub(super) struct LoggedPolynomial<'a> {
     pub coefficients: &'a [f64],
 }
 
-/// The judgement of a logged polynomial.
+/// The judgment of a logged polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum PolynomialJudgement {
+pub(super) enum PolynomialJudgment {
     /// The polynomial is right.
     Right,
     /// The polynomial is right in the definition's form, not the course's.
@@ -45,7 +45,7 @@ pub(super) enum PolynomialJudgement {
 
 /// Returns the comparison of a polynomial with the course's form.
 pub(super) fn compare_first(
-    judged: &StepJudgement,
+    judged: &StepJudgment,
     expected: &ExpectedPolynomials,
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
@@ -57,7 +57,7 @@ pub(super) fn compare_first(
     compare(own, logged.coefficients, &judged.likely_factors(logged.place.pair.kind, logged.number))
 }
 
-impl StepJudgement {
+impl StepJudgment {
     /// Records what a polynomial shows about the program. `first` is its comparison with the course's form. If the
     /// polynomial is right only with some factors, and its positions are known (`is_known`), it is judged at the end of
     /// the trace.
@@ -67,14 +67,14 @@ impl StepJudgement {
         logged: &LoggedPolynomial<'_>,
         first: Result<Match, Mismatch>,
         is_known: bool,
-    ) -> PolynomialJudgement {
+    ) -> PolynomialJudgment {
         let LoggedPolynomial { place, number, coefficients: list } = *logged;
         let own = expected.polynomial(number);
         let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
                 judged.add_pending(logged, (form, PendingCause::Missing), expected, factors.unwrap_or(NO_FACTORS));
             }
-            PolynomialJudgement::DependsOnFactor
+            PolynomialJudgment::DependsOnFactor
         };
         // A polynomial depends on its factor if the expected one is only round-off in each of its forms, and the logged
         // one is larger.
@@ -84,7 +84,7 @@ impl StepJudgement {
             if is_known {
                 self.add_pending(logged, (Form::Either, PendingCause::RoundOff), own, [min_factor, f64::INFINITY]);
             }
-            return PolynomialJudgement::DependsOnFactor;
+            return PolynomialJudgment::DependsOnFactor;
         }
         // The course's form is already known, so a further right polynomial in this form adds nothing.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
@@ -92,7 +92,7 @@ impl StepJudgement {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
                 Ok(found) => self.record_factor(logged, own, found, is_known),
                 Err((_, factors @ Some(_))) => add_pending(self, Form::Either, own, factors),
-                Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
+                Err((mismatch, None)) => PolynomialJudgment::Wrong(mismatch),
             };
         };
         let other = compare(right, list, &self.likely_factors(place.pair.kind, number));
@@ -110,12 +110,12 @@ impl StepJudgement {
                 None if found.scale.is_some() => {
                     self.right_form = self.right_form.or(Some(place));
                     self.record_factor(logged, right, found, is_known);
-                    PolynomialJudgement::RightForm
+                    PolynomialJudgment::RightForm
                 }
                 factors => add_pending(self, Form::Course, own, factors),
             },
             (Err(_), Err(mismatch)) => match [own, right].map(|form| possible_factors(form, list)) {
-                [None, None] => PolynomialJudgement::Wrong(mismatch),
+                [None, None] => PolynomialJudgment::Wrong(mismatch),
                 [course, definition] => {
                     add_pending(self, Form::Course, own, course);
                     add_pending(self, Form::Right, right, definition)
@@ -132,7 +132,7 @@ impl StepJudgement {
         expected: &[BoundedValue],
         found: Match,
         is_known: bool,
-    ) -> PolynomialJudgement {
+    ) -> PolynomialJudgment {
         let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.coefficients, scale));
         match claims {
             None => self.add_share_and_factor(logged.place.pair.kind, logged.number, &found),
@@ -143,7 +143,7 @@ impl StepJudgement {
                 }
             }
         }
-        PolynomialJudgement::Right
+        PolynomialJudgment::Right
     }
 
     /// Records the used share of the tolerance of a right polynomial, and its factor, if it shows one.
@@ -255,7 +255,7 @@ mod tests {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let pass = Pass { stage: Stage::ContinuousTime, index: 0 };
         let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 };
-        let mut judged = StepJudgement::default();
+        let mut judged = StepJudgment::default();
         for factors in bounds {
             let expected = [1e-14, 1.0, 2.0].map(BoundedValue::from_exact);
             let logged = LoggedPolynomial { place, number: 0, coefficients: &[1.0, 2.0] };

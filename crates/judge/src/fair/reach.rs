@@ -7,7 +7,7 @@ use super::{
     context::{Context, Records},
     ordinary_range::OrdinaryRange,
     step::judge_records,
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
 };
 use crate::finding::FindingDetail;
 use fosssim_model::{
@@ -42,7 +42,7 @@ impl<'a> ExtraordinarySteps<'a> {
         Self { scene, range: OrdinaryRange::for_scene(scene), run: None, second_simulation: None }
     }
 
-    /// Judges a step with an extraordinary state. `known_judgement` is the judgement of a step that starts from
+    /// Judges a step with an extraordinary state. `known_judgment` is the judgment of a step that starts from
     /// ordinary states. A step that starts from an extraordinary state is judged only if the reference reaches such
     /// states too. Steps must be passed in order. Also returns the work. The simulation stops soon after it exceeds
     /// `max_work`.
@@ -51,16 +51,16 @@ impl<'a> ExtraordinarySteps<'a> {
         context: &Context<'_>,
         records: Records<'_>,
         identical: bool,
-        known_judgement: Option<StepJudgement>,
+        known_judgment: Option<StepJudgment>,
         max_work: u64,
-    ) -> (StepJudgement, u64) {
+    ) -> (StepJudgment, u64) {
         self.run_to(records.step);
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
         let found = (!is_lost).then(|| self.find_unreachable(&records)).flatten();
-        match (known_judgement, found) {
+        match (known_judgment, found) {
             (Some(judged), Some(detail)) if judged.total() == 0 => (judged.with_finding(records, detail), 0),
             (Some(judged), _) => (judged, 0),
-            (None, Some(detail)) => (StepJudgement::default().with_finding(records, detail), 0),
+            (None, Some(detail)) => (StepJudgment::default().with_finding(records, detail), 0),
             (None, None) => {
                 let simulation =
                     self.second_simulation.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));

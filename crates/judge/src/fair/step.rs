@@ -5,7 +5,7 @@ use super::{
     context::{Context, Records},
     follower::Follower,
     probe::{Sensitivity, probe},
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
 };
 use crate::finding::{Finding, FindingDetail, RecordPart};
 use fosssim_model::{
@@ -26,20 +26,20 @@ pub(crate) fn judge_records(
     simulation: &mut Simulation,
     records: Records<'_>,
     identical: bool,
-) -> StepJudgement {
+) -> StepJudgment {
     let mut judged = if identical {
-        StepJudgement::from_identical_records(context, records.step, records.end.polynomials.len())
+        StepJudgment::from_identical_records(context, records.step, records.end.polynomials.len())
     } else {
         follow(context, simulation, records)
-            .unwrap_or_else(|error| StepJudgement::default().with_finding(records, FindingDetail::NoResult { error }))
+            .unwrap_or_else(|error| StepJudgment::default().with_finding(records, FindingDetail::NoResult { error }))
     };
     compare_records(context, records, &mut judged);
     judged
 }
 
 /// Compares the first record with the scene.
-pub(crate) fn judge_initial_record(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
-    let mut judged = StepJudgement::default();
+pub(crate) fn judge_initial_record(context: &Context<'_>, frame: &LenientFrame) -> StepJudgment {
+    let mut judged = StepJudgment::default();
     let state = State::for_scene(context.scene);
     contact::compare_states(&mut judged, 0, &state, &frame.state, &Tolerances::from_context(context, &state, None));
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
@@ -49,17 +49,13 @@ pub(crate) fn judge_initial_record(context: &Context<'_>, frame: &LenientFrame) 
     judged
 }
 
-fn follow(
-    context: &Context<'_>,
-    simulation: &mut Simulation,
-    records: Records<'_>,
-) -> Result<StepJudgement, StepError> {
+fn follow(context: &Context<'_>, simulation: &mut Simulation, records: Records<'_>) -> Result<StepJudgment, StepError> {
     let run = |simulation: &mut Simulation, mut follower: Follower<'_>| {
         simulation.state_mut().clone_from(records.before);
         simulation.set_steps_done(records.step - 1);
         simulation.step(&mut follower)?;
         follower.finish(simulation.state());
-        Ok::<_, StepError>((follower.judgement, follower.decisions, follower.borderline_calls, follower.has_disputes))
+        Ok::<_, StepError>((follower.judgment, follower.decisions, follower.borderline_calls, follower.has_disputes))
     };
     let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
         run(simulation, Follower::new(context, records, sensitivity, flips))
@@ -93,7 +89,7 @@ fn follow(
 
 /// Adds findings for differences between the two records of a step that must agree (trace-format.md 2), and for logs
 /// that the course's library cannot have written.
-fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
+fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgment) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.add_finding(Finding { step, frame, detail });
     if is_impossible(end) || mid.is_some_and(is_impossible) {

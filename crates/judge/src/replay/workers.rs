@@ -177,7 +177,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
 
 /// Judges a step that has a result by the fair rules.
 fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot { step, before, mid, end, result, fair_judgement: judged, is_extraordinary, is_deferred, .. } = slot;
+    let StepSlot { step, before, mid, end, result, fair_judgment: judged, is_extraordinary, is_deferred, .. } = slot;
     if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.is_beyond_limit) {
         let frame = shape.layout.end_record(*step);
         let mid = shape.layout.has_polynomials.then_some(&*mid);

@@ -3,7 +3,7 @@
 use fosssim_judge::{
     Finding, FindingKind,
     fair::{
-        FairVerdict, Judgement,
+        FairVerdict, Judgment,
         compare::{compare, is_round_off, shows_factor},
         formulas::{BoundedPairMotion, ExpectedPolynomials},
     },
@@ -140,7 +140,7 @@ impl Stage {
         writer.finish().expect("memory").0
     }
 
-    fn judged(&self, trace: &[u8]) -> Result<Judgement, String> {
+    fn judged(&self, trace: &[u8]) -> Result<Judgment, String> {
         let [quick, slow] = [false, true].map(|one_by_one| {
             let options =
                 Options { uses_fair_rules: true, threads: 1, judges_individually: one_by_one, ..Options::default() };

@@ -10,7 +10,7 @@ use fosssim_lab::{
     corpus::{self, CorpusRow},
     runs,
 };
-use fosssim_oracle::judge::{Overall, fair::Judgement};
+use fosssim_oracle::judge::{Overall, fair::Judgment};
 use rayon::prelude::*;
 use std::{collections::BTreeMap, path::Path};
 
@@ -19,7 +19,7 @@ fn main() -> anyhow::Result<()> {
     let corpus = arguments.next().context("usage: fair-table CORPUS [--all]")?;
     let (corpus, all) = (Path::new(&corpus), arguments.next().is_some());
     let rows = corpus::read_rows(corpus)?;
-    let judged: Vec<Option<(Overall, Judgement)>> =
+    let judged: Vec<Option<(Overall, Judgment)>> =
         rows.par_iter().map(|row| judge_row(corpus, row)).collect::<anyhow::Result<_>>()?;
     let mut summary: BTreeMap<(&str, String, String), u32> = BTreeMap::new();
     for (row, judged) in rows.iter().zip(&judged) {
@@ -46,35 +46,35 @@ fn main() -> anyhow::Result<()> {
     Ok(())
 }
 
-fn judge_row(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgement)>> {
+fn judge_row(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgment)>> {
     let Some((scene, trace)) = row.read(corpus)? else { return Ok(None) };
     let outcome = runs::judge_trace(&scene, &trace);
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 
-fn describe_reason(judgement: &Judgement) -> String {
+fn describe_reason(judgment: &Judgment) -> String {
     let mut parts = Vec::new();
-    if let Some(refusal) = judgement.refusal {
+    if let Some(refusal) = judgment.refusal {
         parts.push(format!("{refusal:?}"));
     }
-    if let Some(first) = judgement.findings.first_divergence {
-        let kinds: Vec<String> = judgement
+    if let Some(first) = judgment.findings.first_divergence {
+        let kinds: Vec<String> = judgment
             .findings
             .examples
             .iter()
-            .map(|f| format!("{} {}", judgement.findings.counts.get(f.kind()), f.kind()))
+            .map(|f| format!("{} {}", judgment.findings.counts.get(f.kind()), f.kind()))
             .collect();
-        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), judgement.findings.wrong_steps));
+        parts.push(format!("{first} [{}; {} steps]", kinds.join(", "), judgment.findings.wrong_steps));
     }
-    if let Some([low, high]) = judgement.factor {
+    if let Some([low, high]) = judgment.factor {
         parts.push(format!("factor {low:.3e}..{high:.3e}"));
     }
-    if judgement.borderline > 0 {
-        parts.push(format!("{} borderline", judgement.borderline));
+    if judgment.borderline > 0 {
+        parts.push(format!("{} borderline", judgment.borderline));
     }
-    if judgement.lost_decisions > 0 {
-        parts.push(format!("{} lost", judgement.lost_decisions));
+    if judgment.lost_decisions > 0 {
+        parts.push(format!("{} lost", judgment.lost_decisions));
     }
-    parts.push(format!("{:?} {:.2?}", judgement.form, judgement.shares));
+    parts.push(format!("{:?} {:.2?}", judgment.form, judgment.shares));
     parts.join("; ")
 }

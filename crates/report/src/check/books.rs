@@ -12,7 +12,7 @@ pub(crate) type BookVerdict = (&'static str, TextStyle, &'static str, String);
 /// Returns the verdicts of both books; `None` if the headline already contains them.
 pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let outcome = check.outcome;
-    let judgement = outcome.fair.as_deref()?;
+    let judgment = outcome.fair.as_deref()?;
     let (look, word) = match outcome.parity.overall {
         Overall::Passed => (TextStyle::Right, "passed"),
         Overall::Failed => (TextStyle::Wrong, "failed"),
@@ -24,8 +24,8 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let follow = consequences::count_consequences(outcome);
     found.extend((follow > 0).then(|| format!("among them {}", consequences::describe_consequences(follow))));
     let parity = ("the original's rules", look, word, found.join(", "));
-    let (look, word) = fair::verdict(judgement);
-    Some([parity, ("the fair rules", look, word, fair::summarize(judgement, outcome))])
+    let (look, word) = fair::verdict(judgment);
+    Some([parity, ("the fair rules", look, word, fair::summarize(judgment, outcome))])
 }
 
 /// Renders the section about the rule books; `None` if the headline already contains the verdicts.

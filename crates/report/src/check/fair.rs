@@ -3,12 +3,12 @@ use super::super::{number::group_digits, step_share, style::TextStyle};
 use fosssim_findings::Cause;
 use fosssim_judge::{
     Outcome,
-    fair::{FairRefusal, FairVerdict, Judgement},
+    fair::{FairRefusal, FairVerdict, Judgment},
 };
 
 /// Returns the text of the verdict and its style.
-pub(super) const fn verdict(judgement: &Judgement) -> (TextStyle, &'static str) {
-    match judgement.verdict {
+pub(super) const fn verdict(judgment: &Judgment) -> (TextStyle, &'static str) {
+    match judgment.verdict {
         FairVerdict::Accepted => (TextStyle::Right, "accepted"),
         FairVerdict::Rejected => (TextStyle::Wrong, "rejected"),
         FairVerdict::None => (TextStyle::Notice, "undecided"),
@@ -16,8 +16,8 @@ pub(super) const fn verdict(judgement: &Judgement) -> (TextStyle, &'static str) 
 }
 
 /// Returns the reason for the fair verdict, in one line.
-pub(super) fn summarize(judgement: &Judgement, outcome: &Outcome) -> String {
-    let refusal = match judgement.refusal {
+pub(super) fn summarize(judgment: &Judgment, outcome: &Outcome) -> String {
+    let refusal = match judgment.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),
         Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
@@ -26,21 +26,21 @@ pub(super) fn summarize(judgement: &Judgement, outcome: &Outcome) -> String {
         }
         None => None,
     };
-    let found = judgement.findings.first_divergence.as_ref().map(|first| {
-        let wrong = match judgement.findings.wrong_steps {
+    let found = judgment.findings.first_divergence.as_ref().map(|first| {
+        let wrong = match judgment.findings.wrong_steps {
             0 => "the first record is wrong".to_owned(),
             many => step_share::describe_wrong(many, outcome.steps, group_digits),
         };
         let first = match first.step {
-            0 if judgement.findings.wrong_steps == 0 => String::new(),
+            0 if judgment.findings.wrong_steps == 0 => String::new(),
             0 => ", and the first record is also wrong".to_owned(),
             _ if outcome.steps == 1 => String::new(),
             step => format!(", the first is step {step}"),
         };
         wrong + &first
     });
-    let given_up = judgement.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
-    let nothing = (judgement.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
+    let given_up = judgment.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
+    let nothing = (judgment.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
         parts if parts.is_empty() => step_share::describe_right_steps(outcome.steps, group_digits),

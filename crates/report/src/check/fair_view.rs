@@ -2,15 +2,15 @@
 use super::super::view::{FindingView, view};
 use fosssim_findings::{
     Book, Cause, Finding, FindingKind,
-    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
+    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgment, Shares},
 };
 use serde::Serialize;
 
 view! {
-    /// The judgement by the fair rules.
+    /// The judgment by the fair rules.
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
-    pub(super) struct FairView<'a> from fair: Judgement {
+    pub(super) struct FairView<'a> from fair: Judgment {
         /// The verdict by the fair rules. It is `none` if judging stopped early before a fault was found.
         verdict: FairVerdict = fair.verdict,
         /// The reason why the whole trace is rejected; null if there is none.

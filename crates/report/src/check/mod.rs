@@ -1,4 +1,4 @@
-//! The report on one trace. It contains the verdict, the residuals, the fair rules' judgement, the findings and the
+//! The report on one trace. It contains the verdict, the residuals, the fair rules' judgment, the findings and the
 //! first difference.
 //!
 //! [`render_text`](Check::render_text) renders the report as text, and [`json`](Check::json) renders it as JSON
@@ -170,9 +170,9 @@ view! {
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
         summary: String = text::render_headline(check),
-        /// The judgement by the original's rules.
+        /// The judgment by the original's rules.
         parity: Parity = Parity::from(check.outcome),
-        /// The judgement by the fair rules; null if they were not used.
+        /// The judgment by the fair rules; null if they were not used.
         fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
         /// The reason why the two rule books differ; null if they agree.
         difference: Option<CauseView> = find_cause(check.outcome).as_ref().map(CauseView::from),
@@ -213,7 +213,7 @@ view! {
 }
 
 view! {
-    /// The judgement by the original's rules.
+    /// The judgment by the original's rules.
     #[schemars(deny_unknown_fields)]
     struct Parity from outcome: Outcome {
         /// The original's verdict. It is `none` if judging stopped early.

@@ -24,7 +24,7 @@ impl Follower<'_> {
     /// Returns the decision with which the step continues. The submission's decision is used if the trace shows it.
     pub(super) fn choose_decision(&mut self, pair: Pair, logged_decision: Decision) -> Decision {
         let call = self.decisions.len();
-        let findings = self.judgement.total();
+        let findings = self.judgment.total();
         let own = self.call.own.take();
         if let Some(own) = own {
             self.report_losses(pair, logged_decision, own);
@@ -41,8 +41,8 @@ impl Follower<'_> {
             _ => logged_decision.collides(),
         };
         // A decision that is counted as wrong is not also counted as borderline.
-        if decision.collides() != is_expected && self.judgement.total() == findings {
-            self.judgement.add_borderline(self.pass, pair, decision.collides());
+        if decision.collides() != is_expected && self.judgment.total() == findings {
+            self.judgment.add_borderline(self.pass, pair, decision.collides());
         }
         if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
             self.borderline_calls.push(call);
@@ -125,7 +125,7 @@ impl Follower<'_> {
                 let own = Impulse { pair, normal, time };
                 let expected = self.expected_polynomials();
                 let finding =
-                    contact::compare_hit(self.records.before, expected.as_ref(), own, &actual, &mut self.judgement);
+                    contact::compare_hit(self.records.before, expected.as_ref(), own, &actual, &mut self.judgment);
                 finding.into_iter().for_each(|detail| self.add_finding(detail));
                 contact::logged_decision(actual).unwrap_or(Decision::Hit { time, normal })
             }
@@ -138,7 +138,7 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Round-off may change whether the pair collides, but not the normal and the time of the collision.
-                    let (expected, judged) = (self.expected_polynomials(), &mut self.judgement);
+                    let (expected, judged) = (self.expected_polynomials(), &mut self.judgment);
                     let finding = contact::compare_possible_hit(
                         self.context,
                         &self.records,

@@ -12,7 +12,7 @@ use super::{
     context::{Context, FollowedDecision, Records},
     formulas::{BoundedPairMotion, ExpectedPolynomials},
     probe::Sensitivity,
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
     unapplied_pairs,
 };
 use crate::{
@@ -41,8 +41,8 @@ pub(super) struct Follower<'a> {
     sensitivity: Option<&'a Sensitivity>,
     /// The numbers of the calls in hybrid scenes whose borderline decisions are reversed.
     flipped_decisions: &'a [usize],
-    /// The judgement of the step so far.
-    pub judgement: StepJudgement,
+    /// The judgment of the step so far.
+    pub judgment: StepJudgment,
     /// All decisions of the step.
     pub decisions: Vec<FollowedDecision>,
     /// The calls of hybrid scenes whose decisions round-off may change, in order. They are known in the second
@@ -108,13 +108,13 @@ impl<'a> Follower<'a> {
         sensitivity: Option<&'a Sensitivity>,
         flips: &'a [usize],
     ) -> Self {
-        let judged = StepJudgement { step: records.step, frame: records.frame, ..StepJudgement::default() };
+        let judged = StepJudgment { step: records.step, frame: records.frame, ..StepJudgment::default() };
         let mut follower = Self {
             context,
             records,
             sensitivity,
             flipped_decisions: flips,
-            judgement: judged,
+            judgment: judged,
             decisions: Vec::new(),
             borderline_calls: Vec::new(),
             pass: Pass { stage: Stage::Simple, index: 0 },
@@ -164,7 +164,7 @@ impl<'a> Follower<'a> {
 
     /// Ends the step: compares what is known only at its end. `state` is the reference's end state.
     pub fn finish(&mut self, state: &State) {
-        self.judgement.decisions = self.decisions.len() as u64;
+        self.judgment.decisions = self.decisions.len() as u64;
         self.compare_pass_counts();
         self.count_unused_impulses();
         if !self.has_error[1] {
@@ -176,30 +176,27 @@ impl<'a> Follower<'a> {
     /// pairs are reported instead.
     fn compare_end_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
-        let tolerances = Tolerances::from_context(
-            self.context,
-            own,
-            self.sensitivity.map(|earlier_judgement| &earlier_judgement.end),
-        );
-        let earlier_judgement =
-            matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judgement.clone());
-        contact::compare_states(&mut self.judgement, frame, own, &end.state, &tolerances);
-        let Some(earlier_judgement) =
-            earlier_judgement.filter(|earlier_judgement| earlier_judgement.total() < self.judgement.total())
+        let tolerances =
+            Tolerances::from_context(self.context, own, self.sensitivity.map(|earlier_judgment| &earlier_judgment.end));
+        let earlier_judgment =
+            matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judgment.clone());
+        contact::compare_states(&mut self.judgment, frame, own, &end.state, &tolerances);
+        let Some(earlier_judgment) =
+            earlier_judgment.filter(|earlier_judgment| earlier_judgment.total() < self.judgment.total())
         else {
             return;
         };
         let explained = unapplied_pairs::explain_velocities(self.context, &tolerances, before, own, &end.state);
         if let Some((pairs, faulty)) = explained {
-            self.judgement = earlier_judgement;
+            self.judgment = earlier_judgment;
             pairs.into_iter().for_each(|detail| self.add_finding(detail));
-            contact::compare_states(&mut self.judgement, frame, &faulty, &end.state, &tolerances);
+            contact::compare_states(&mut self.judgment, frame, &faulty, &end.state, &tolerances);
         }
     }
 
     fn add_finding(&mut self, detail: FindingDetail) {
         let (step, frame) = (self.records.step, self.records.frame);
-        self.judgement.add_finding(Finding { step, frame, detail });
+        self.judgment.add_finding(Finding { step, frame, detail });
     }
 }
 
@@ -260,7 +257,7 @@ impl StepController for Follower<'_> {
         let mut numbered = polynomials.iter().enumerate();
         let is_same = numbered.all(|(number, own)| has_same_bits(own.coefficients(), logged(number)));
         if is_same {
-            self.judgement.identical_polynomials[pair.kind] += 1;
+            self.judgment.identical_polynomials[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
                 // If the logged decision differs, the motion shows whether round-off can explain it.
                 let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
@@ -275,7 +272,7 @@ impl StepController for Follower<'_> {
         if is_right {
             let lengths = || polynomials.iter().enumerate().map(|(k, own)| (own.coefficients().len(), logged(k).len()));
             let differ = quick_matches[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
-            self.judgement.lost_decisions += u64::from(differ);
+            self.judgment.lost_decisions += u64::from(differ);
             // The root search must also end for the reference's own polynomials.
             self.call.is_excluded_by_log = !differ
                 && polynomials.iter().all(|own| contact::is_searchable(own.coefficients()))
@@ -330,7 +327,7 @@ impl StepController for Follower<'_> {
         if !self.has_error[0] {
             let bounds = self.sensitivity.map(|known| &known.mid);
             let tolerances = Tolerances::from_context(self.context, state, bounds);
-            contact::compare_states(&mut self.judgement, self.records.frame - 1, state, &mid.state, &tolerances);
+            contact::compare_states(&mut self.judgment, self.records.frame - 1, state, &mid.state, &tolerances);
         }
         if mid.state.is_finite() {
             state.clone_from(&mid.state);

@@ -4,7 +4,7 @@ use crate::{
     fair::{
         compare::{Match, Mismatch, compare, shows_factor},
         formulas::{BoundedPairMotion, ExpectedPolynomials},
-        polynomial::{LoggedPolynomial, PolynomialJudgement, compare_first, wrong_polynomial_finding},
+        polynomial::{LoggedPolynomial, PolynomialJudgment, compare_first, wrong_polynomial_finding},
     },
     finding::{FindingDetail, PolynomialPlace, Role},
 };
@@ -26,10 +26,10 @@ impl<'a> Follower<'a> {
     ) -> bool {
         let count = quick_matches.len();
         // The first approach polynomial that shows its form is compared with bounds.
-        let is_form_known = pair.kind != PairKind::ParticleEdge || self.judgement.course_form.is_some();
+        let is_form_known = pair.kind != PairKind::ParticleEdge || self.judgment.course_form.is_some();
         if is_form_known && quick_matches.iter().all(Option::is_some) {
             for (number, found) in quick_matches.iter().flatten().enumerate() {
-                self.judgement.add_share_and_factor(pair.kind, number, found);
+                self.judgment.add_share_and_factor(pair.kind, number, found);
             }
             return true;
         }
@@ -44,7 +44,7 @@ impl<'a> Follower<'a> {
             std::array::from_fn(|number| match quick_matches.get(number) {
                 None => Ok(Match { scale: None, tolerance_share: 0.0 }),
                 Some(Some(found)) => Ok(*found),
-                Some(None) => compare_first(&self.judgement, expected, &self.logged_polynomial(pair, index, number)),
+                Some(None) => compare_first(&self.judgment, expected, &self.logged_polynomial(pair, index, number)),
             })
         };
         let mut results = matches(&expected, quick_matches);
@@ -67,24 +67,24 @@ impl<'a> Follower<'a> {
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
             // After an error that moves the particles, their positions are unknown.
             let is_reached = is_known || !self.has_error[self.stage_index()];
-            let pended = self.judgement.pending_count();
-            let judgement = self.judgement.record_evidence(&expected, &logged, result, is_reached);
-            let is_pending = self.judgement.pending_count() > pended;
-            match judgement {
-                PolynomialJudgement::Right => {}
-                PolynomialJudgement::RightForm => has_right_approach = true,
-                PolynomialJudgement::DependsOnFactor => {
-                    has_right_approach |= expected.other_form(number).is_some() && self.judgement.right_form.is_some();
+            let pended = self.judgment.pending_count();
+            let judgment = self.judgment.record_evidence(&expected, &logged, result, is_reached);
+            let is_pending = self.judgment.pending_count() > pended;
+            match judgment {
+                PolynomialJudgment::Right => {}
+                PolynomialJudgment::RightForm => has_right_approach = true,
+                PolynomialJudgment::DependsOnFactor => {
+                    has_right_approach |= expected.other_form(number).is_some() && self.judgment.right_form.is_some();
                     is_right &= is_reached;
                 }
-                PolynomialJudgement::Wrong(mismatch) => {
+                PolynomialJudgment::Wrong(mismatch) => {
                     is_right = false;
                     self.report_wrong_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
             // Positions after a response have the round-off of the response.
-            self.judgement.has_finding_after_response |=
-                self.is_moved(pair) && (is_pending || matches!(judgement, PolynomialJudgement::Wrong(_)));
+            self.judgment.has_finding_after_response |=
+                self.is_moved(pair) && (is_pending || matches!(judgment, PolynomialJudgment::Wrong(_)));
         }
         self.call.motion = Some(CallMotion { motion: bounded_motion, has_right_approach });
         is_right
@@ -147,9 +147,9 @@ impl<'a> Follower<'a> {
 
     /// Records the form of an approach polynomial that is identical to the reference's.
     pub(super) fn record_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
-        if pair.kind == PairKind::ParticleEdge && self.judgement.course_form.is_none() {
+        if pair.kind == PairKind::ParticleEdge && self.judgment.course_form.is_none() {
             let expected = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end).polynomials();
-            self.judgement.record_course_form(&expected, &self.logged_polynomial(pair, index, 3));
+            self.judgment.record_course_form(&expected, &self.logged_polynomial(pair, index, 3));
         }
     }
 

@@ -1,6 +1,6 @@
 //! Manipulated traces: each one tests something that the fair rules must not accept.
 use crate::{
-    fair::{FairRefusal, FairVerdict, Judgement, context::Context},
+    fair::{FairRefusal, FairVerdict, Judgment, context::Context},
     finding::{FindingDetail, FindingKind},
     samples::{
         BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, judge_by_both, replace_polynomials, scene, simulate,
@@ -31,7 +31,7 @@ fn assets() -> Vec<(String, Scene)> {
     scenes
 }
 
-fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
+fn fair(scene: &Scene, trace: &[u8]) -> Judgment {
     *judge_by_both(scene, trace).fair.expect("the fair rules were asked")
 }
 

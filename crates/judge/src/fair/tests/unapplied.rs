@@ -3,7 +3,7 @@ use crate::{
     finding::{FindingDetail, FindingKind},
     replay::{Options, judge},
 };
-use fosssim_findings::fair::{FairVerdict, Judgement};
+use fosssim_findings::fair::{FairVerdict, Judgment};
 use fosssim_model::{
     scene::{self, Scene},
     sim::PairKind,
@@ -65,14 +65,14 @@ fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64;
     bytes
 }
 
-fn judged(times: impl Fn(usize, usize) -> [f64; 2]) -> Judgement {
+fn judged(times: impl Fn(usize, usize) -> [f64; 2]) -> Judgment {
     let scene = pile(0.525);
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     *judge(&scene, &trace(&scene, times)[..], &options, &mut ()).fair.expect("the fair rules were asked")
 }
 
 /// Returns the counts of named pairs, and of positions and velocities without an explanation.
-fn counts(fair: &Judgement) -> [u64; 2] {
+fn counts(fair: &Judgment) -> [u64; 2] {
     let count = |kind| fair.findings.counts.get(kind);
     [count(FindingKind::PairForce), count(FindingKind::Position) + count(FindingKind::Velocity)]
 }

@@ -1,7 +1,7 @@
 //! Each probe scene shows its mistakes, and all probe scenes accept a correct program.
 use fosssim_judge::{
     self as judging,
-    fair::{FairVerdict, Judgement},
+    fair::{FairVerdict, Judgment},
     replay::{Options, judge},
 };
 use fosssim_model::{
@@ -97,7 +97,7 @@ fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
     student::record_trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
 
-fn judged(scene: &Scene, trace: &[u8]) -> Judgement {
+fn judged(scene: &Scene, trace: &[u8]) -> Judgment {
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     *judge(scene, trace, &options, &mut ()).fair.expect("the fair rules were asked")
 }

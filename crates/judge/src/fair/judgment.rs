@@ -2,11 +2,11 @@
 use super::{
     factors::{FactorStatistics, FactorsByPolynomial},
     pending_polynomials::{PendingCause, PendingPolynomials},
-    step_judgement::StepJudgement,
+    step_judgment::StepJudgment,
 };
 use fosssim_findings::{
     Finding, FindingDetail, FindingKind, Outcome, Stop,
-    fair::{FairRefusal, FairVerdict, Form, Judgement},
+    fair::{FairRefusal, FairVerdict, Form, Judgment},
 };
 use fosssim_model::sim::{PairKind, PairKindMap, StepError};
 
@@ -16,10 +16,10 @@ const MAX_EXAMPLES: usize = 8;
 /// The minimum number of borderline decisions of an undecided trace, so that small scenes are never undecided.
 const SMALL_SCENE_DECISIONS: u64 = 64;
 
-/// The fair rules' judgement of a trace so far, and the polynomials that can be judged only at its end.
+/// The fair rules' judgment of a trace so far, and the polynomials that can be judged only at its end.
 #[derive(Debug, Default)]
-pub(crate) struct JudgementBuilder {
-    judgement: Judgement,
+pub(crate) struct JudgmentBuilder {
+    judgment: Judgment,
     /// The factors that polynomials show.
     factors: FactorsByPolynomial,
     /// The factors claimed by single coefficients.
@@ -39,34 +39,34 @@ struct StepPending {
     is_wrong: bool,
 }
 
-impl JudgementBuilder {
+impl JudgmentBuilder {
     /// Adds the findings of the initial record.
-    pub(crate) fn add_initial(&mut self, initial: &StepJudgement) {
+    pub(crate) fn add_initial(&mut self, initial: &StepJudgment) {
         self.add(initial);
-        self.judgement.findings.wrong_steps = 0;
+        self.judgment.findings.wrong_steps = 0;
     }
 
     /// Adds a step, in the order of the steps.
-    pub(crate) fn add(&mut self, step: &StepJudgement) {
+    pub(crate) fn add(&mut self, step: &StepJudgment) {
         for finding in &step.findings {
             self.add_finding(*finding);
         }
-        self.judgement.findings.counts += step.further_counts;
-        self.judgement.decisions += step.decisions;
-        self.judgement.borderline += step.borderline.len() as u64;
-        let room = MAX_EXAMPLES.saturating_sub(self.judgement.borderline_examples.len());
-        self.judgement.borderline_examples.extend(step.borderline.iter().take(room));
+        self.judgment.findings.counts += step.further_counts;
+        self.judgment.decisions += step.decisions;
+        self.judgment.borderline += step.borderline.len() as u64;
+        let room = MAX_EXAMPLES.saturating_sub(self.judgment.borderline_examples.len());
+        self.judgment.borderline_examples.extend(step.borderline.iter().take(room));
         for (all, new) in self.factors.values_mut().flatten().zip(step.factors.values().flatten()) {
             all.add(new);
         }
-        self.judgement.lost_decisions += step.lost_decisions;
-        self.judgement.shares.max_with(&step.shares);
+        self.judgment.lost_decisions += step.lost_decisions;
+        self.judgment.shares.max_with(&step.shares);
         let mut is_wrong = !step.findings.is_empty();
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
             let Some(place) = place else { continue };
-            if self.judgement.form == Form::Either {
-                self.judgement.form = form;
-            } else if self.judgement.form != form {
+            if self.judgment.form == Form::Either {
+                self.judgment.form = form;
+            } else if self.judgment.form != form {
                 is_wrong = true;
                 self.add_finding(Finding {
                     step: step.step,
@@ -75,7 +75,7 @@ impl JudgementBuilder {
                 });
             }
         }
-        self.judgement.findings.wrong_steps += u64::from(is_wrong);
+        self.judgment.findings.wrong_steps += u64::from(is_wrong);
         for (kind, &calls) in step.identical_polynomials.iter() {
             let approach = kind.polynomial_count() - 1;
             for (number, same) in self.identical_polynomials[kind].iter_mut().enumerate() {
@@ -89,7 +89,7 @@ impl JudgementBuilder {
         // A polynomial that already fits, or that is judged only in the other form, needs no further check.
         let is_open = |pending: &&PendingPolynomials| {
             let (kind, number) = pending.place;
-            let has_other_form = self.judgement.form != Form::Either && !pending.counts_for_form(self.judgement.form);
+            let has_other_form = self.judgment.form != Form::Either && !pending.counts_for_form(self.judgment.form);
             // As long as further polynomials may follow, claims do not confirm a claimed factor.
             let is_confirmed = match pending.cause {
                 PendingCause::RoundOff => self.factors_of(kind).range().is_some_and(|range| !is_constant(range)),
@@ -128,10 +128,10 @@ impl JudgementBuilder {
         all
     }
 
-    /// Adds a finding to the judgement.
+    /// Adds a finding to the judgment.
     pub(crate) fn add_finding(&mut self, finding: Finding) {
-        self.judgement.findings.counts.add(finding.kind(), 1);
-        self.judgement.findings.keep_first(&finding);
+        self.judgment.findings.counts.add(finding.kind(), 1);
+        self.judgment.findings.keep_first(&finding);
     }
 
     /// Counts pending polynomials that are wrong with the usual factors of their kind, in the form that the trace uses.
@@ -140,47 +140,46 @@ impl JudgementBuilder {
         let fails = |form| {
             all.iter().any(|step| step.polynomials.counts_for_form(form) && self.finding(&step.polynomials).is_some())
         };
-        if self.judgement.form == Form::Either && fails(Form::Course) {
+        if self.judgment.form == Form::Either && fails(Form::Course) {
             // If nothing else shows the form, missing coefficients may: it is the form in which no relevant coefficient
             // is missing.
-            self.judgement.form = if fails(Form::Right) { Form::Course } else { Form::Right };
+            self.judgment.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
-        let (form, mut last_wrong) = (self.judgement.form, 0);
+        let (form, mut last_wrong) = (self.judgment.form, 0);
         for StepPending { polynomials, is_wrong } in all.iter().filter(|step| step.polynomials.counts_for_form(form)) {
             let Some(finding) = self.finding(polynomials) else { continue };
             // Steps are in order, so the polynomials of one step are adjacent.
-            self.judgement.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
+            self.judgment.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
             // In a step, the findings about polynomials come before those about decisions.
-            if self.judgement.findings.first_divergence.is_some_and(|first| is_consequence(&first, &finding)) {
-                self.judgement.findings.first_divergence = None;
+            if self.judgment.findings.first_divergence.is_some_and(|first| is_consequence(&first, &finding)) {
+                self.judgment.findings.first_divergence = None;
             }
-            if let Some(index) =
-                self.judgement.findings.examples.iter().position(|known| known.kind() == finding.kind())
-                && self.judgement.findings.examples[index].step > finding.step
+            if let Some(index) = self.judgment.findings.examples.iter().position(|known| known.kind() == finding.kind())
+                && self.judgment.findings.examples[index].step > finding.step
             {
-                self.judgement.findings.examples.remove(index);
+                self.judgment.findings.examples.remove(index);
             }
             self.add_finding(finding);
-            self.judgement.findings.counts.add(finding.kind(), polynomials.count - 1);
+            self.judgment.findings.counts.add(finding.kind(), polynomials.count - 1);
         }
     }
 
     /// Returns whether most decisions are borderline and differ from the reference's. A correct program has a few such
     /// decisions, but they are not the majority.
     fn is_undecided(&self) -> bool {
-        self.judgement.borderline >= SMALL_SCENE_DECISIONS && self.judgement.borderline > self.judgement.decisions / 2
+        self.judgment.borderline >= SMALL_SCENE_DECISIONS && self.judgment.borderline > self.judgment.decisions / 2
     }
 
     /// Records that judging stops before `step`.
     pub(crate) fn stop_judging(&mut self, step: u32) {
-        self.judgement.first_unjudged_step = Some(step);
+        self.judgment.first_unjudged_step = Some(step);
     }
 
-    /// Returns the complete judgement, with its verdict.
-    pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
+    /// Returns the complete judgment, with its verdict.
+    pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgment {
         if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
-            self.judgement.first_unjudged_step.get_or_insert(step);
+            self.judgment.first_unjudged_step.get_or_insert(step);
         }
         let refusal = if matches!(outcome.stop, Some(Stop::Trace { .. })) {
             Some(FairRefusal::Stopped)
@@ -191,21 +190,21 @@ impl JudgementBuilder {
         } else {
             self.is_undecided().then_some(FairRefusal::Undecided)
         };
-        self.judgement.refusal = refusal;
+        self.judgment.refusal = refusal;
         self.count_wrong_pending();
         let factors = self.factors.values().flatten().filter_map(FactorStatistics::range);
         let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
-        let mut judgement = self.judgement;
-        judgement.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
-        judgement.findings.conclude();
-        judgement.verdict = if judgement.refusal.is_some() || judgement.findings.counts.total() > 0 {
+        let mut judgment = self.judgment;
+        judgment.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
+        judgment.findings.conclude();
+        judgment.verdict = if judgment.refusal.is_some() || judgment.findings.counts.total() > 0 {
             FairVerdict::Rejected
-        } else if outcome.steps_judged == outcome.steps && judgement.first_unjudged_step.is_none() {
+        } else if outcome.steps_judged == outcome.steps && judgment.first_unjudged_step.is_none() {
             FairVerdict::Accepted
         } else {
             FairVerdict::None
         };
-        judgement
+        judgment
     }
 }
 

@@ -12,7 +12,7 @@ use fosssim_model::sim::{Pair, PairKind, PairKindMap, Pass};
 
 /// The findings, decisions and factors of one step.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct StepJudgement {
+pub(crate) struct StepJudgment {
     /// The step, from 1.
     pub step: u32,
     /// The number of the step's end record.
@@ -45,8 +45,8 @@ pub(crate) struct StepJudgement {
     pub has_finding_after_response: bool,
 }
 
-impl StepJudgement {
-    /// Creates the judgement of a step whose records are identical to the reference's, with `polynomials` polynomials
+impl StepJudgment {
+    /// Creates the judgment of a step whose records are identical to the reference's, with `polynomials` polynomials
     /// in the end record.
     pub fn from_identical_records(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
@@ -62,7 +62,7 @@ impl StepJudgement {
         }
     }
 
-    /// Adds a finding to the judgement.
+    /// Adds a finding to the judgment.
     pub(super) fn add_finding(&mut self, finding: Finding) {
         if self.findings.iter().any(|first| first.kind() == finding.kind()) {
             self.further_counts.add(finding.kind(), 1);
@@ -71,7 +71,7 @@ impl StepJudgement {
         }
     }
 
-    /// Returns the judgement with one more finding.
+    /// Returns the judgment with one more finding.
     pub fn with_finding(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.add_finding(Finding { step: self.step, frame: self.frame, detail });
