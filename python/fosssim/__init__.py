@@ -285,7 +285,7 @@ class Finding:
 class Mistake:
     """A mistake that explains the faults of a trace."""
 
-    #: The name in the catalogue, and a sentence about the mistake.
+    #: The name in the catalog, and a sentence about the mistake.
     key: str
     text: str
     #: Further sentences, which may give a formula away.

@@ -1,4 +1,4 @@
-//! Prints the catalogue of mistakes as a table or as JSON.
+//! Prints the catalog of mistakes as a table or as JSON.
 use std::io::{self, Write};
 
 use crate::student::{Area, Row, RowKind, all_rows};
@@ -26,7 +26,7 @@ impl From<&Row> for Entry {
     }
 }
 
-/// Prints the catalogue to standard output.
+/// Prints the catalog to standard output.
 pub fn print(json: bool) -> anyhow::Result<u8> {
     let text = if json {
         let listing = Listing { schema: "fosssim-sample/1", mistakes: all_rows().map(Entry::from).collect() };

@@ -9,7 +9,7 @@ use fosssim_oracle::{
     num::polynomial::Polynomial,
     scene::{self, Scene, original},
     sim::{Pair, PairKind, RootSearch, Simulation, SteeringObserver, StepController},
-    student::{self, CATALOGUE, Row, Student},
+    student::{self, CATALOG, Row, Student},
     suite::library,
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
@@ -38,7 +38,7 @@ pub fn assets() -> Vec<(String, Scene)> {
 }
 
 pub fn rows(kind: student::RowKind) -> Vec<&'static Row> {
-    CATALOGUE.iter().filter(|row| row.kind == kind).collect()
+    CATALOG.iter().filter(|row| row.kind == kind).collect()
 }
 
 fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgment) {

@@ -2,7 +2,7 @@
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::{Scene, original},
-    student::{self, CATALOGUE, Student},
+    student::{self, CATALOG, Student},
     suite::library,
 };
 use rayon::prelude::*;
@@ -22,7 +22,7 @@ pub fn compare(name: &str, scene: &Scene, trace: &[u8]) {
 fn mistakes_are_judged_the_same_one_by_one() {
     for name in ["ContinuousTimeTests/spinning-edge-sweeps-balls", "GeometricTests/rows-collected-over-many-rounds"] {
         let scene = original::read(library::find_scene(name).expect("a scene")).expect("a sound scene").scene;
-        CATALOGUE.par_iter().for_each(|row| {
+        CATALOG.par_iter().for_each(|row| {
             let trace =
                 student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
             compare(&format!("{} on {name}", row.id), &scene, &trace);

@@ -2,7 +2,7 @@
 use fosssim_oracle::{
     diagnose::find_known,
     scene::{Scene, original},
-    student::{self, CATALOGUE, RowKind, Student},
+    student::{self, CATALOG, RowKind, Student},
     suite::library,
 };
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ enum Recognized {
 #[test]
 fn most_mistakes_are_named_on_their_best_scene() {
     let scenes = scenes();
-    let recognized: Vec<(&str, Recognized)> = CATALOGUE
+    let recognized: Vec<(&str, Recognized)> = CATALOG
         .par_iter()
         .filter(|row| row.kind == RowKind::Wrong)
         .map(|row| {
@@ -78,7 +78,7 @@ fn no_correct_variant_is_reported() {
     let accused: Vec<String> = scenes()
         .par_iter()
         .flat_map_iter(|(name, scene, _)| {
-            CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).filter_map(move |row| {
+            CATALOG.iter().filter(|row| row.kind == RowKind::Variant).filter_map(move |row| {
                 let trace =
                     student::record_trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
                 let first = find_known(scene, &trace[..]).into_iter().next()?;
@@ -100,7 +100,7 @@ fn a_right_approach_hides_no_mistake() {
     };
     let correct = trace(None);
     assert_eq!(find_known(scene, &correct[..]), []);
-    let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && !row.id.starts_with("pe-approach"));
+    let rows = CATALOG.iter().filter(|row| row.kind == RowKind::Wrong && !row.id.starts_with("pe-approach"));
     let mut seen = 0;
     let mut unnamed = Vec::new();
     for row in rows {

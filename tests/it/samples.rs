@@ -67,7 +67,7 @@ fn trace(scene: &Path, mistake: Option<&str>) -> Vec<u8> {
     run(scene, mistake).stderr
 }
 
-fn catalogue() -> Vec<Row> {
+fn catalog() -> Vec<Row> {
     let output = sample().args(["--list", "--json"]).output().expect("the sample starts");
     assert!(output.status.success());
     let listing: Listing = serde_json::from_slice(&output.stdout).expect("valid JSON");
@@ -136,8 +136,8 @@ fn the_correct_sample_equals_the_original_on_every_scene_of_the_corpus() {
 }
 
 #[test]
-fn the_catalogue_is_large_and_every_id_is_accepted() {
-    let rows = catalogue();
+fn the_catalog_is_large_and_every_id_is_accepted() {
+    let rows = catalog();
     let count = |kind: &str| rows.iter().filter(|row| row.kind == kind).count();
     assert!(count("wrong") >= 95 && count("variant") >= 14);
     assert_eq!(rows.len(), count("wrong") + count("variant"));
@@ -163,10 +163,10 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
     assert!(different.is_empty(), "{different:?}");
 }
 
-/// Documents contain the number of mistakes, which must change with the catalogue.
+/// Documents contain the number of mistakes, which must change with the catalog.
 #[test]
 fn documents_say_how_many_mistakes_and_variants_there_are() {
-    let rows = catalogue();
+    let rows = catalog();
     let count = |kind: &str| rows.iter().filter(|row| row.kind == kind).count();
     let states = rows.iter().filter(|row| is_state_mistake(row)).count();
     let (wrong, variants) = (count("wrong") - states, count("variant"));

@@ -369,7 +369,7 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's note on a mistake of the catalogue, or on a finding that is not in the catalogue.
+/// Reads the course's note on a mistake of the catalog, or on a finding that is not in the catalog.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
     let word = key.get_ref().as_str();

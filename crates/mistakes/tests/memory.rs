@@ -72,7 +72,7 @@ fn peak_of(scene: &Scene) -> usize {
     PEAK.load(Relaxed) - before
 }
 
-/// No program of the catalogue needs a list of the scene's pairs, so memory grows with the scene and not with the
+/// No program of the catalog needs a list of the scene's pairs, so memory grows with the scene and not with the
 /// number of pairs.
 #[test]
 fn memory_grows_with_the_scene_and_not_with_its_pairs() {

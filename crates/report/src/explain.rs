@@ -208,7 +208,7 @@ pub(crate) mod tests {
         sim::{Pair, PairKind},
     };
     use fosssim_student::{
-        self as student, CATALOGUE, RowKind, Student,
+        self as student, CATALOG, RowKind, Student,
         assignments::t2m2::{Input, Reading, Subject},
         find,
     };
@@ -274,13 +274,13 @@ pub(crate) mod tests {
             Some("No simple mistake explains the polynomial: particle-edge overlap.")
         );
         assert_eq!((explanation_texts(&[], Style::Plain), render_sentence(&[])), (Vec::new(), None));
-        let catalogued = |key: &str| {
+        let cataloged = |key: &str| {
             let key = key.to_owned();
             Explanation { key, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
         };
         let sentences = ["pp-no-two", "response-sign"].map(|key| find(key).expect("a row").sentence());
         assert_eq!(
-            render_sentence(&["pp-no-two", "response-sign"].map(catalogued)),
+            render_sentence(&["pp-no-two", "response-sign"].map(cataloged)),
             Some(format!("likely mistakes: {}", sentences.join(" ")))
         );
     }
@@ -322,10 +322,10 @@ pub(crate) mod tests {
     }
 
     #[test]
-    fn no_mistake_of_the_catalogue_gives_a_formula_away_below_full() {
+    fn no_mistake_of_the_catalog_gives_a_formula_away_below_full() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let mut told = 0;
-        for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
+        for row in CATALOG.iter().filter(|row| row.kind == RowKind::Wrong) {
             let trace =
                 student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
             for one in limit_explanations(Hints::What, explain(&scene, &trace)) {

@@ -80,7 +80,7 @@ fn is_minus(before: &str, behind: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_student::CATALOGUE;
+    use fosssim_student::CATALOG;
 
     #[test]
     fn formulas_get_signs_and_sentences_stay() {
@@ -100,12 +100,12 @@ mod tests {
 
     /// Words of the assignment can still be found: only symbols change.
     #[test]
-    fn every_exact_form_of_the_catalogue_keeps_its_words() {
+    fn every_exact_form_of_the_catalog_keeps_its_words() {
         let words = |line: &str| -> Vec<String> {
             let is_word = |word: &&str| word.len() > 3 && *word != "alpha" && *word != "sqrt";
             line.split(|c: char| !c.is_ascii_alphabetic()).filter(is_word).map(str::to_owned).collect()
         };
-        for row in CATALOGUE {
+        for row in CATALOG {
             assert_eq!(words(&to_mathematical_signs(row.term)), words(row.term), "{}", row.id);
             assert!(!to_mathematical_signs(row.term).contains("^2"), "{}", row.id);
         }

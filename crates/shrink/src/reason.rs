@@ -71,11 +71,11 @@ impl WrongReason {
 
 /// Returns whether the explanations of a wrong trace name a mistake, as the first one if that is requested.
 fn is_shown(mistake: &Explanation, scene: &Scene, observation: &Observation, is_only_reason: bool) -> bool {
-    // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage without code.
+    // The rows of the catalog that the mistake names. There are none if it is neither a row nor a stage without code.
     let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
     let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
     let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
-    // Most attempts end here, long before every mistake of the catalogue has been tried.
+    // Most attempts end here, long before every mistake of the catalog has been tried.
     if is_only_reason && !keys.is_empty() && !reproduces(scene, &observation.trace, &keys) {
         return false;
     }

@@ -44,7 +44,7 @@ impl Student {
         self.mistakes().any(|made| made == mistake)
     }
 
-    /// Returns whether the student makes no mistake of the catalogue.
+    /// Returns whether the student makes no mistake of the catalog.
     pub(super) fn makes_no_mistake(&self) -> bool {
         self.mistakes[0].is_none()
     }

@@ -1,7 +1,7 @@
 //! A second simulator, which can make mistakes; it simulates a student's submission.
 //!
-//! It is written separately from [`fosssim_model::sim`], and makes documented mistakes of the [`CATALOGUE`] on request.
-//! The catalogue also contains correct variants. The sample program is this simulator with arguments and a file.
+//! It is written separately from [`fosssim_model::sim`], and makes documented mistakes of the [`CATALOG`] on request.
+//! The catalog also contains correct variants. The sample program is this simulator with arguments and a file.
 //! `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**: verdicts come
 //! only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing.
 //!
@@ -41,7 +41,7 @@ pub use crate::assignments::{
     all::{all_rows, find},
     rows::{Area, RowKind},
     states::{Edit, Slip, StepMistake, TERMS, Term},
-    t2m2::{CATALOGUE, Mistake, Row},
+    t2m2::{CATALOG, Mistake, Row},
 };
 pub use author::Student;
 pub use detection::body_polynomials;

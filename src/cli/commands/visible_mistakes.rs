@@ -32,7 +32,7 @@ pub(super) struct VisibleMistakes {
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
 /// Returns for each area of the assignment which of its mistakes the plan's scenes show. The areas are in the order of
-/// the catalogue.
+/// the catalog.
 pub(super) fn find_visible_mistakes(plan: &Plan) -> Vec<VisibleMistakes> {
     let written = |scene: &Scene, student: Student| {
         student::record_limited_trace(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)

@@ -55,7 +55,7 @@ fn maps() -> [Map; 5] {
 
 /// Returns whether the program's trace is accepted. A program that never ends is not accepted.
 fn is_accepted(scene: &Scene, id: Option<&str>) -> bool {
-    let mistake = id.map(|id| student::find(id).expect("a row of the catalogue").mistake);
+    let mistake = id.map(|id| student::find(id).expect("a row of the catalog").mistake);
     let Ok(trace) = student::record_trace(scene, Student::new(mistake)) else { return false };
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let fair = judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");

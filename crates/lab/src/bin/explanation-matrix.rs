@@ -8,7 +8,7 @@ use anyhow::Context;
 use fosssim_lab::runs::{WatchedScene, judge_trace, record_trace};
 use fosssim_oracle::{
     diagnose::{Explanation, explain_together, find_known},
-    student::{CATALOGUE, Row, RowKind, Student},
+    student::{CATALOG, Row, RowKind, Student},
 };
 use rayon::prelude::*;
 use std::{
@@ -40,7 +40,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
     let scenes = WatchedScene::from_folder(&folder)?;
-    let rows: Vec<_> = CATALOGUE.iter().filter(|row| row.id.contains(&part)).collect();
+    let rows: Vec<_> = CATALOG.iter().filter(|row| row.id.contains(&part)).collect();
     let results: Vec<Vec<ExplainedTrace>> =
         rows.par_iter().map(|row| scenes.iter().map(|scene| explain_row(scene, row)).collect()).collect();
     let mut accused = false;

@@ -9,7 +9,7 @@
 use fosssim_lab::runs::{WatchedScene, is_accepted, judge_trace, record_trace};
 use fosssim_oracle::{
     judge::{FindingKind, Outcome, Overall},
-    student::{CATALOGUE, Row, RowKind, Student},
+    student::{CATALOG, Row, RowKind, Student},
 };
 use rayon::prelude::*;
 use std::{
@@ -63,7 +63,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
     let cases = WatchedScene::from_folder(&folder)?;
-    let rows: Vec<&Row> = CATALOGUE.iter().filter(|row| row.id.contains(&part)).collect();
+    let rows: Vec<&Row> = CATALOG.iter().filter(|row| row.id.contains(&part)).collect();
     let matrix: Vec<Vec<MatrixCell>> =
         rows.par_iter().map(|row| cases.iter().map(|case| compute_cell(case, row)).collect()).collect();
     for (book, name) in RULE_BOOKS.iter().enumerate() {

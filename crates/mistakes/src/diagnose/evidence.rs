@@ -87,7 +87,7 @@ struct Support<'a> {
     contradicting_traces: usize,
     /// The most detailed explanation with this statement.
     reported: Option<&'a Explanation>,
-    /// Whether the statement is a mistake of the catalogue or a known formula. These are tried on every trace.
+    /// Whether the statement is a mistake of the catalog or a known formula. These are tried on every trace.
     is_known: bool,
 }
 
@@ -172,7 +172,7 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
 }
 
 /// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
-/// mistakes of the catalogue come first, then the mistake that is more often the first explanation, then the earlier
+/// mistakes of the catalog come first, then the mistake that is more often the first explanation, then the earlier
 /// one. Returns `None` if no mistake is likely.
 pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     let all = collect_evidence(traces);

@@ -11,7 +11,7 @@ use super::{
     topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_model::sim::PairKind;
-use fosssim_student::{Area, CATALOGUE, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
+use fosssim_student::{Area, CATALOG, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of mistakes reported for a program. All empty stages together count as one.
@@ -149,7 +149,7 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
         let is_zero_row = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
-        CATALOGUE.iter().find(is_zero_row)
+        CATALOG.iter().find(is_zero_row)
     };
     let to_explanation = |row: &Row| Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
@@ -170,7 +170,7 @@ fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
         return sure.into_iter().chain(doubted).collect();
     }
     let mut keys: Vec<String> = sure.iter().map(|explanation| explanation.key.clone()).collect();
-    keys.sort_by_key(|key| CATALOGUE.iter().position(|row| row.id == *key));
+    keys.sort_by_key(|key| CATALOG.iter().position(|row| row.id == *key));
     let all = Explanation {
         reproduced: sure.iter().map(|explanation| explanation.reproduced).sum(),
         samples: sure.iter().map(|explanation| explanation.samples).sum(),
@@ -310,7 +310,7 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
         };
         traces.iter().filter(shows).count()
     };
-    let late = CATALOGUE.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
+    let late = CATALOG.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.

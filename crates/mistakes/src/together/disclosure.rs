@@ -60,7 +60,7 @@ mod tests {
     };
     use fosssim_judge::replay;
     use fosssim_model::assignments::Assignment;
-    use fosssim_student::{self as student, CATALOGUE, RowKind, Student, assignments::probe_scenes};
+    use fosssim_student::{self as student, CATALOG, RowKind, Student, assignments::probe_scenes};
 
     fn explanation() -> Explanation {
         let example = Example {
@@ -124,7 +124,7 @@ mod tests {
     #[test]
     fn reports_grow_with_the_hints_and_show_values_only_with_full() {
         let (_, scene) = probe_scenes(Assignment::DEFAULT).swap_remove(0);
-        let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
+        let row = CATALOG.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());

@@ -2,7 +2,7 @@
 //! and the parts written by its student.
 //!
 //! Each [`Definition`] contains this as data, one file per assignment. Everything else that depends on an assignment
-//! (suites, the catalogue of mistakes, formulas, probe scenes) is in a folder `assignments/<key>` of the crate that
+//! (suites, the catalog of mistakes, formulas, probe scenes) is in a folder `assignments/<key>` of the crate that
 //! needs it. Readers of traces, simulator and judge use the assignment of a scene, which follows from its collision
 //! type ([`Assignment::for_collisions`]). This module does not use scenes, states or files.
 

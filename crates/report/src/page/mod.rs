@@ -43,10 +43,10 @@ pub const ELEMENTS: &str = include_str!("viewer/elements.js");
 const VIEWER: &str = include!("viewer/viewer.in");
 const STYLE: &str = include_str!("style.css");
 
-/// A run of the reference with one mistake of the catalogue built in.
+/// A run of the reference with one mistake of the catalog built in.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MistakeRun {
-    /// The mistake's key in the catalogue.
+    /// The mistake's key in the catalog.
     pub id: String,
     /// The mistake as a sentence.
     pub sentence: String,

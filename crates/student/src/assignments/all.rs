@@ -1,7 +1,7 @@
 //! All rows of all tables of mistakes.
 use super::{
     states::{EDIT_ROWS, STEPS},
-    t2m2::{CATALOGUE, Mistake, Row},
+    t2m2::{CATALOG, Mistake, Row},
 };
 use std::sync::LazyLock;
 
@@ -11,7 +11,7 @@ static SHARED_ROWS: LazyLock<Vec<Row>> =
 
 /// Returns all rows, in the order of the assignments, with forces and integrators first.
 pub fn all_rows() -> impl Iterator<Item = &'static Row> {
-    SHARED_ROWS.iter().chain(CATALOGUE)
+    SHARED_ROWS.iter().chain(CATALOG)
 }
 
 /// Returns the row with the given id, or `None` if there is none.

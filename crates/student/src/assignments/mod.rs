@@ -1,4 +1,4 @@
-//! Code that depends on an assignment of the course, one folder each: the catalogue of mistakes, formulas as data,
+//! Code that depends on an assignment of the course, one folder each: the catalog of mistakes, formulas as data,
 //! probe scenes.
 pub mod all;
 pub mod rows;

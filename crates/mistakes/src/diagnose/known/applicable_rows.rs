@@ -1,4 +1,4 @@
-//! Finds the rows of the catalogue whose mistakes can be visible on a scene. Only these are tried.
+//! Finds the rows of the catalog whose mistakes can be visible on a scene. Only these are tried.
 use crate::diagnose::student_code::{changed_term, is_written_by_student};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
@@ -10,7 +10,7 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, Term, all_rows};
 /// The maximum number of pairs in a scene. In larger scenes, penalty forces between distant bodies are not tried.
 const MAX_DISTANT_PAIRS: usize = 5_000;
 
-/// Returns the rows that may explain a trace of the scene, in the order of the catalogue. They are mistakes in the code
+/// Returns the rows that may explain a trace of the scene, in the order of the catalog. They are mistakes in the code
 /// that students write in the scene's assignment. Missing records and faults of nearby pairs are found separately
 /// ([`near_pairs`](super::super::near_pairs)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {

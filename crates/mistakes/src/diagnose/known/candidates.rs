@@ -1,4 +1,4 @@
-//! Tries the rows of the catalogue on the kept steps.
+//! Tries the rows of the catalog on the kept steps.
 use super::{
     applicable_rows::applicable_rows,
     resimulate::ApproachForm,
@@ -44,7 +44,7 @@ impl<'a> Candidates<'a> {
         Self { candidates, scan, probe_steps: probes, other_steps: others, trials }
     }
 
-    /// Returns the rows that reproduce the most wrong steps, in the order of the catalogue. All of them reproduce the
+    /// Returns the rows that reproduce the most wrong steps, in the order of the catalog. All of them reproduce the
     /// same number. The list is empty if that is less than half of the steps.
     pub(super) fn best_scores(&self) -> Vec<Score> {
         let complete = self.complete_scores();

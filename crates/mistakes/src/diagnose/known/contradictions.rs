@@ -8,7 +8,7 @@ use fosssim_model::{
     sim::{PairKind, pairs},
 };
 use fosssim_num::vector::{length, vector_at};
-use fosssim_student::{CATALOGUE, Mistake, Row};
+use fosssim_student::{CATALOG, Mistake, Row};
 
 /// Returns the keys of mistakes with which a program never does something that this trace shows. For example, the
 /// program never moves a zone, never makes a pass, or never logs a right polynomial of a kind.
@@ -29,7 +29,7 @@ pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> 
         Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| is_moving(sample) && leaves_start(sample)),
         _ => false,
     };
-    CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
+    CATALOG.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
 }
 
 /// Returns the kinds of pairs with a right polynomial before the first wrong one of the step.

@@ -1,11 +1,11 @@
-//! Finds the known mistake that reproduces a submission. Steps are simulated again with each mistake of the catalogue.
+//! Finds the known mistake that reproduces a submission. Steps are simulated again with each mistake of the catalog.
 //!
 //! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For a diverse
 //! selection of them, and for several right steps with events, the second simulator ([`fosssim_student`]) starts from
 //! the submission's own state and makes one mistake. The mistake explains the submission if everything that the step
 //! logged is reproduced. This includes polynomials up to a positive factor, contacts, and the states in the middle and
 //! at the end. The search never judges: a step that no mistake reproduces stays wrong. Correct variants of the
-//! catalogue are tried as well, and if one of them reproduces the steps, no mistake is named.
+//! catalog are tried as well, and if one of them reproduces the steps, no mistake is named.
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`sampling`](super::sampling).
 mod alignment;
@@ -35,7 +35,7 @@ use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
 use trials::Trials;
 
-/// Returns the mistakes of the catalogue that explain a trace.
+/// Returns the mistakes of the catalog that explain a trace.
 ///
 /// The result is empty if all steps are right, or if no mistake reproduces at least half of the wrong steps. It is also
 /// empty if a correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three
@@ -64,7 +64,7 @@ pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     })
 }
 
-/// The catalogue's explanations of a trace, and the unexplained rest.
+/// The catalog's explanations of a trace, and the unexplained rest.
 #[derive(Debug, Default)]
 pub(super) struct KnownMistakes {
     /// The mistakes, the likeliest first.
@@ -75,7 +75,7 @@ pub(super) struct KnownMistakes {
     pub(super) contradicted_keys: Vec<String>,
 }
 
-/// Returns the catalogue's explanations of kept steps, and the steps themselves if no mistake explains all of them.
+/// Returns the catalog's explanations of kept steps, and the steps themselves if no mistake explains all of them.
 pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
     let only = |explanation: Explanation| KnownMistakes { explanations: vec![explanation], ..KnownMistakes::default() };
     if let Some(missing) = alignment::find_missing_record(scene, &scan) {
@@ -98,7 +98,7 @@ pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, m
     KnownMistakes { explanations: padded.into_iter().collect(), unexplained: None, contradicted_keys: denies }
 }
 
-/// Returns the catalogue's explanations, and whether they are complete. If no mistake explains the steps, it changes
+/// Returns the catalog's explanations, and whether they are complete. If no mistake explains the steps, it changes
 /// `scan` to a comparison with a program whose approach polynomial is the mathematically right one.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong_steps.is_empty() {
@@ -190,7 +190,7 @@ fn find_best_mistake(
 }
 
 /// Returns a rank among mistakes that a trace cannot distinguish; a smaller rank is likelier. Unwritten functions come
-/// first, and mistakes that show only in special scenes come last. Rows of equal rank keep the catalogue's order.
+/// first, and mistakes that show only in special scenes come last. Rows of equal rank keep the catalog's order.
 fn rank_plausibility(row: &Row) -> u8 {
     match row.mistake {
         Mistake::ParticleParticleEmpty

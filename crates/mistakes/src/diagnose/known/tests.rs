@@ -61,7 +61,7 @@ fn mistakes_of_all_stages_are_named() {
 
 #[test]
 fn correct_variants_are_never_reported() {
-    for row in student::CATALOGUE.iter().filter(|row| row.kind == student::RowKind::Variant) {
+    for row in student::CATALOG.iter().filter(|row| row.kind == student::RowKind::Variant) {
         assert_eq!(first(row.id), None, "{}", row.id);
     }
 }
@@ -185,7 +185,7 @@ fn half_done_work_with_a_mistake_has_both() {
 /// A program with an empty detection and any other mistake does not crash.
 #[test]
 fn an_empty_detection_goes_with_every_other_mistake() {
-    for row in student::CATALOGUE {
+    for row in student::CATALOG {
         for empty in ["pp-empty", "pe-empty", "ph-empty"] {
             let _trace = made(&scene(), &[empty, row.id]);
         }

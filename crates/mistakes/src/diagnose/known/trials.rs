@@ -1,4 +1,4 @@
-//! Runs programs with mistakes of the catalogue on kept steps.
+//! Runs programs with mistakes of the catalog on kept steps.
 use super::resimulate::{ApproachForm, resimulate, step_work};
 use crate::diagnose::sampling::{
     KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, find_first_difference, polynomial_matches,

@@ -32,7 +32,7 @@ use super::{
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
-use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, body_polynomials};
+use fosssim_student::{Area, CATALOG, Row, RowKind, Student, body_polynomials};
 use std::collections::BTreeMap;
 use study::{Candidate, PolynomialSample, PolynomialStudy};
 
@@ -199,7 +199,7 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
             predicted.get(number).is_some_and(is_match)
         })
     };
-    CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
+    CATALOG.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
 /// Returns a detail of a guess about `subjects` as part of the explanation.

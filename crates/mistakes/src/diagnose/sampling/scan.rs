@@ -59,7 +59,7 @@ pub struct StepContext {
     pub keeps_forces: bool,
 }
 
-/// The parts of a trace on which the rows of the catalogue are tried.
+/// The parts of a trace on which the rows of the catalog are tried.
 #[derive(Debug, Default)]
 pub struct Scan {
     /// The wrong steps, in order.

@@ -97,7 +97,7 @@ fn a_named_mistake_is_tried_on_all_traces_before_a_second_one() {
     // Each trace names this mistake.
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(correct_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
-    // A mistake of the catalogue explains the polynomials that it makes, even if they look like another mistake alone.
+    // A mistake of the catalog explains the polynomials that it makes, even if they look like another mistake alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
     let known = row("pp-one-radius", &both[..1]);

@@ -10,7 +10,7 @@ use fosssim_model::{
     sim::{Decision, Detection, Observer, PairKind, PairKindMap, RootSearch, Simulation},
 };
 use fosssim_student::assignments::probe_scenes;
-use fosssim_student::{self as student, Area, CATALOGUE, Mistake, Row, RowKind, Student};
+use fosssim_student::{self as student, Area, CATALOG, Mistake, Row, RowKind, Student};
 
 #[test]
 fn both_readers_give_the_scenes_back() {
@@ -115,7 +115,7 @@ fn loses(scene: &Scene, trace: &[u8]) -> bool {
 #[test]
 fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
     let scenes: Vec<(String, Scene)> = probe_scenes(Assignment::T2M2);
-    let missed: Vec<&str> = CATALOGUE
+    let missed: Vec<&str> = CATALOG
         .iter()
         .filter(|row| row.kind == RowKind::Wrong && row.area != Area::Trace)
         .filter(|row| {
@@ -131,7 +131,7 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
 /// with which the course's library drops coefficients that affect a decision.
 #[test]
 fn correct_programs_are_accepted_in_every_probe_scene() {
-    let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).map(Some);
+    let rows = CATALOG.iter().filter(|row| row.kind == RowKind::Variant).map(Some);
     let refused: Vec<String> = rows
         .chain([None])
         .flat_map(|row| probe_scenes(Assignment::T2M2).into_iter().map(move |(name, scene)| (row, name, scene)))

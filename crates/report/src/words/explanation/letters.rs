@@ -117,7 +117,7 @@ mod tests {
         assert!(text.contains("R turns a vector by the zone's angle") && !text.contains("r1"), "{text}");
         let text = explain_line("sum(xs) / N is used instead of x_cm.").expect("it has short names");
         assert!(!text.contains("R "), "{text}");
-        let failsafe = fosssim_student::CATALOGUE.iter().filter(|row| row.id.starts_with("failsafe-"));
+        let failsafe = fosssim_student::CATALOG.iter().filter(|row| row.id.starts_with("failsafe-"));
         let false_ones: Vec<&str> = failsafe
             .filter(|row| explain_line(row.term).is_some_and(|text| text.contains("r1")))
             .map(|row| row.id)

@@ -100,7 +100,7 @@ pub(crate) fn is_specific(explanation: &Explanation) -> bool {
     !matches!(explanation.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Nothing, .. })
 }
 
-/// Returns the sentence about a known mistake; `None` if the key is not in a catalogue.
+/// Returns the sentence about a known mistake; `None` if the key is not in a catalog.
 pub(crate) fn known_sentence(key: &str) -> Option<String> {
     find(key).map(Row::sentence)
 }

@@ -25,7 +25,7 @@ fn new_row(term_row: &'static TermRow, slip: Slip) -> MistakeRow<StepMistake> {
     }
 }
 
-/// The catalogue rows that edit one term of a formula. Rows for functions that the student left empty come first.
+/// The catalog rows that edit one term of a formula. Rows for functions that the student left empty come first.
 pub static EDIT_ROWS: LazyLock<Vec<MistakeRow<StepMistake>>> = LazyLock::new(|| {
     let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
     let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();

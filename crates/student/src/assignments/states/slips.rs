@@ -3,7 +3,7 @@
 /// The table of slips, each with its part of a sentence, which follows the quantity's name.
 macro_rules! slips {
     ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {
-        /// A small change of a quantity. A row of the catalogue is a slip in a [quantity](super::Term).
+        /// A small change of a quantity. A row of the catalog is a slip in a [quantity](super::Term).
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Slip { $(#[doc = $words] $(#[$about])* $slip$(($by))?,)* }
 

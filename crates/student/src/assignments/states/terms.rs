@@ -3,7 +3,7 @@ use super::slips::{BLOCKS, DISTANCE, EACH, FORCE, NUMBER, PAIR, SUM, Slip, VECTO
 use crate::assignments::rows::Area;
 use fosssim_model::assignments::{ForceKind, Integrator, PairKind, Part};
 
-/// The row of a quantity in the catalogue.
+/// The row of a quantity in the catalog.
 #[derive(Debug)]
 pub struct TermRow {
     /// The computed quantity, such as a force between two kinds of bodies.
@@ -348,7 +348,7 @@ impl Term {
         false
     }
 
-    /// Returns the term's row in the catalogue.
+    /// Returns the term's row in the catalog.
     pub const fn row(self) -> &'static TermRow {
         &TERMS[self as usize]
     }

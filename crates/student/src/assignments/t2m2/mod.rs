@@ -1,5 +1,5 @@
 //! Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
-pub mod catalogue;
+pub mod catalog;
 mod edits;
 pub mod extra_letters;
 pub mod formulas;
@@ -10,7 +10,7 @@ pub(super) mod probes;
 mod reading;
 mod special_formulas;
 
-pub use catalogue::{CATALOGUE, Mistake, Row};
+pub use catalog::{CATALOG, Mistake, Row};
 pub use edits::{FormulaEdit, NamedEdit};
 pub use formulas::Letter;
 pub use fosssim_findings::explanation::{Input, Reading, Subject};

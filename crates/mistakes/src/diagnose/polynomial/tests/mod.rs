@@ -1,6 +1,6 @@
 //! Explains students with one mistake each on random motions. The explanation must name the mistake and reproduce
 //! everything.
-mod catalogue;
+mod catalog;
 mod radius;
 
 use super::*;

@@ -14,7 +14,7 @@ use super::{
     special_formulas::*,
 };
 
-/// A row of the catalogue, with the mistake as a [`Mistake`].
+/// A row of the catalog, with the mistake as a [`Mistake`].
 pub type Row = MistakeRow<Mistake>;
 
 impl From<StepMistake> for Mistake {
@@ -25,7 +25,7 @@ impl From<StepMistake> for Mistake {
 
 rows! {
     /// A difference between a student's program and the reference.
-    Mistake CATALOGUE [Step StepMistake] [FormulaEdit]
+    Mistake CATALOG [Step StepMistake] [FormulaEdit]
     Wrong ParticleParticle "sentences/particle-particle.txt" {
         ParticleParticleEmpty "pp-empty" [Lists(Vec::clear)];
         ParticleParticleZero "pp-zero" [Lists(|lists| lists.iter_mut().for_each(|list| list.fill(0.0)))];

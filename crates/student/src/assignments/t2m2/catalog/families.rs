@@ -1,6 +1,6 @@
-//! Tests that the catalogue is closed under the assignment's symmetries. A mistake with one kind of pair, one end, one
+//! Tests that the catalog is closed under the assignment's symmetries. A mistake with one kind of pair, one end, one
 //! position in a list or one quantity exists for the others, or a reason is given here.
-use super::CATALOGUE;
+use super::CATALOG;
 use crate::assignments::{
     all::find,
     rows::{Area, RowKind},
@@ -325,7 +325,7 @@ fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
         cells().filter_map(|(.., cell)| if let Row(id) = cell { Some(*id) } else { None }).collect();
     let is_alone = |id: &str| SINGLE_KIND_PREFIXES.iter().any(|(beginning, _)| id.starts_with(beginning));
-    let pair_rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && row.pair_kind().is_some());
+    let pair_rows = CATALOG.iter().filter(|row| row.kind == RowKind::Wrong && row.pair_kind().is_some());
     let gaps: Vec<&str> = pair_rows
         .filter(|row| row.area <= Area::ContactVector && !known.contains(row.id) && !is_alone(row.id))
         .map(|row| row.id)
@@ -334,7 +334,7 @@ fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let vain: Vec<&str> = SINGLE_KIND_PREFIXES
         .iter()
         .map(|(id, _)| *id)
-        .filter(|id| !CATALOGUE.iter().any(|row| row.id.starts_with(id)))
+        .filter(|id| !CATALOG.iter().any(|row| row.id.starts_with(id)))
         .collect();
     assert!(vain.is_empty(), "{vain:?} do not name a row");
 }

@@ -1,4 +1,4 @@
-//! The students of the catalogue on small random scenes: a mistake is explained correctly, and a correct variant is not
+//! The students of the catalog on small random scenes: a mistake is explained correctly, and a correct variant is not
 //! explained at all.
 use super::{Explanation, Numbers, PairKind, Sample, Subject, compare, explain_polynomials, particle_lists, samples};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
@@ -8,7 +8,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::{Vec2, vector_at};
 use fosssim_student::assignments::t2m2::{Inputs, formulas};
-use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
+use fosssim_student::{Area, CATALOG, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
 
 /// The kind of motion and of bodies in the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -126,7 +126,7 @@ const ACCUSED_IF_ASKED: [&str; 4] =
 fn correct_variants_are_not_reported() {
     let is_known = |id: &str| FALSE_POSITIVES.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
     for style in [Style::General, Style::Slow, Style::Plain] {
-        for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {
+        for row in CATALOG.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {
             assert_eq!(explain_polynomials(&first_passes(row, style)), [], "{} {style:?}", row.id);
         }
     }
@@ -148,12 +148,12 @@ const OF_OTHERS: [&str; 10] = [
 
 fn mistakes() -> impl Iterator<Item = &'static Row> {
     let is_asked = |row: &&Row| concerns_polynomials(row) && !OF_OTHERS.contains(&row.id);
-    CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong).filter(is_asked)
+    CATALOG.iter().filter(|row| row.kind == RowKind::Wrong).filter(is_asked)
 }
 
 /// If no two quantities are equal, every mistake is reported once and reproduced completely.
 #[test]
-fn mistakes_of_the_catalogue_are_explained() {
+fn mistakes_of_the_catalog_are_explained() {
     for (row, style) in mistakes().flat_map(|row| [(row, Style::General), (row, Style::Slow)]) {
         let found = explain_polynomials(&first_passes(row, style));
         let few = if row.id == "handover-approach-only" { 2 } else { 1 };
@@ -167,7 +167,7 @@ fn mistakes_of_the_catalogue_are_explained() {
 
 /// In plain scenes some mistakes are not visible. The visible ones are explained as well as in other scenes.
 #[test]
-fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
+fn mistakes_of_the_catalog_are_explained_in_plain_scenes() {
     let hidden = [
         "pp-first-radius-twice",
         "pp-second-radius-twice",
@@ -185,7 +185,7 @@ fn mistakes_of_the_catalogue_are_explained_in_plain_scenes() {
 
 /// The text fits the mistake, not only the numbers.
 #[test]
-fn explanations_say_what_the_catalogue_says() {
+fn explanations_say_what_the_catalog_says() {
     for (id, key) in [
         ("pp-radii-squared-apart", "radii-squared-apart"),
         ("pp-radius-not-squared", "radius-not-squared"),
@@ -213,7 +213,7 @@ fn explanations_say_what_the_catalogue_says() {
         ("handover-position-only", "missing-polynomials"),
         ("handover-monic", "monic"),
     ] {
-        let row = find(id).expect("the catalogue has it");
+        let row = find(id).expect("the catalog has it");
         for style in [Style::General, Style::Plain] {
             let found = explain_polynomials(&first_passes(row, style));
             assert_eq!(found.first().map(|one| one.key.as_str()), Some(key), "{id} {style:?}: {found:#?}");
