@@ -65,13 +65,13 @@ pub(super) fn cancellation_by_signals() -> Arc<Cancellation> {
     CANCELLATION
         .get_or_init(|| {
             let cancellation = Arc::new(Cancellation::default());
-            let signalled = cancellation.clone();
+            let signaled = cancellation.clone();
             let mut first = None;
             // Without a handler, a signal ends the program, and the sandbox with it.
             drop(ctrlc::set_handler(move || {
                 // `timeout` and a terminal may each send the same signal.
                 let first = *first.get_or_insert_with(Instant::now);
-                if signalled.is_cancelled() {
+                if signaled.is_canceled() {
                     if first.elapsed() > Duration::from_secs(1) {
                         end_program();
                     }
@@ -79,7 +79,7 @@ pub(super) fn cancellation_by_signals() -> Arc<Cancellation> {
                 }
                 // This thread is started first, because the calls below could block as well.
                 thread::spawn(end_when_idle);
-                signalled.cancel();
+                signaled.cancel();
                 progress_bars::write_above_bars(b"\nstopping (press Ctrl-C again to stop immediately)\n");
             }));
             cancellation

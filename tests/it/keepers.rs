@@ -64,8 +64,8 @@ fn runs_of_one_submission_share_a_keeper_until_one_is_stopped() {
     let others = || Limits { processes: 17, ..small() };
     let ([.., with_other_limits], running) = run(others());
     assert_ne!(with_other_limits, keeper);
-    running.canceller().cancel();
-    assert_eq!(running.wait().unwrap().ended, RunEnd::Cancelled);
+    running.canceler().cancel();
+    assert_eq!(running.wait().unwrap().ended, RunEnd::Canceled);
     let ([.., after_a_stop], running) = run(others());
     assert_ne!(after_a_stop, with_other_limits);
     assert_eq!(finish(running), RunEnd::Exited(0));

@@ -92,7 +92,7 @@ fn exit_codes_and_own_signals_are_distinguished() {
     let program = bench.script("#!/bin/sh\nexit 3\n");
     assert_eq!(bench.run(&program, &[]).ended, RunEnd::Exited(3));
     let program = bench.script("#!/bin/sh\nkill -SEGV $$\n");
-    assert_eq!(bench.run(&program, &[]).ended, RunEnd::Signalled(11));
+    assert_eq!(bench.run(&program, &[]).ended, RunEnd::Signaled(11));
 }
 
 #[test]
@@ -171,12 +171,12 @@ fn a_failed_memory_request_is_the_memory_limit() {
 }
 
 #[test]
-fn a_run_can_be_cancelled_and_dropped() {
+fn a_run_can_be_canceled_and_dropped() {
     let Some(bench) = Bench::new() else { return };
     let job = bench.job("/bin/sleep", &["1000"]).trace("trace.bin");
     let running = bench.backend.start(&job).unwrap();
-    running.canceller().cancel();
-    assert_eq!(running.wait().unwrap().ended, RunEnd::Cancelled);
+    running.canceler().cancel();
+    assert_eq!(running.wait().unwrap().ended, RunEnd::Canceled);
     // Dropping the run kills the sleeper, which would otherwise wait for a thousand seconds.
     drop(bench.backend.start(&job).unwrap());
 }

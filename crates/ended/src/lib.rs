@@ -13,13 +13,14 @@ use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
 /// The result of a run: how the program ended, or, if the sandbox stopped it, which limit it exceeded. Except for
-/// [`RunEnd::Exited`] and [`RunEnd::Signalled`], each is a decision of the sandbox.
+/// [`RunEnd::Exited`] and [`RunEnd::Signaled`], each is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RunEnd {
     /// The program exited by itself with this exit code.
     Exited(i32),
     /// A signal with this number ended the program. The program itself was the cause, as in a crash or an abort.
-    Signalled(i32),
+    #[serde(rename = "Signalled")]
+    Signaled(i32),
     /// The program used up its processor time.
     CpuLimit,
     /// The program used up its wall time.
@@ -40,7 +41,8 @@ pub enum RunEnd {
     /// The program could not be started.
     CouldNotStart(StartProblem),
     /// The grader stopped the program.
-    Cancelled,
+    #[serde(rename = "Cancelled")]
+    Canceled,
 }
 
 impl RunEnd {
@@ -48,7 +50,7 @@ impl RunEnd {
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Exited(_) => "exited",
-            Self::Signalled(_) => "signalled",
+            Self::Signaled(_) => "signalled",
             Self::CpuLimit => "cpu",
             Self::WallLimit => "wall",
             Self::MemoryLimit => "memory",
@@ -57,7 +59,7 @@ impl RunEnd {
             Self::FolderLimit => "folder",
             Self::Violation { .. } => "violation",
             Self::CouldNotStart(_) => "could-not-start",
-            Self::Cancelled => "cancelled",
+            Self::Canceled => "cancelled",
         }
     }
 }
@@ -66,7 +68,7 @@ impl fmt::Display for RunEnd {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exited(code) => write!(formatter, "exited with code {code}"),
-            Self::Signalled(signal) => write!(formatter, "was killed by signal {signal} ({})", signal_name(*signal)),
+            Self::Signaled(signal) => write!(formatter, "was killed by signal {signal} ({})", signal_name(*signal)),
             Self::CpuLimit => formatter.write_str("used up its processor time"),
             Self::WallLimit => formatter.write_str("used up its wall time"),
             Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
@@ -76,7 +78,7 @@ impl fmt::Display for RunEnd {
             Self::Violation { call } => write!(formatter, "used a forbidden system call: {call}"),
             Self::CouldNotStart(own @ StartProblem::GradersOwn) => write!(formatter, "was not started: {own}"),
             Self::CouldNotStart(problem) => write!(formatter, "could not start: {problem}"),
-            Self::Cancelled => formatter.write_str("was stopped by the grader"),
+            Self::Canceled => formatter.write_str("was stopped by the grader"),
         }
     }
 }

@@ -63,8 +63,8 @@ impl FailureKind {
     /// fits.
     pub const fn from_end(end: &RunEnd) -> Option<Self> {
         match end {
-            RunEnd::Signalled(_) => Some(Self::Crash),
-            RunEnd::Exited(0) | RunEnd::CouldNotStart(_) | RunEnd::Cancelled => None,
+            RunEnd::Signaled(_) => Some(Self::Crash),
+            RunEnd::Exited(0) | RunEnd::CouldNotStart(_) | RunEnd::Canceled => None,
             RunEnd::Exited(_) => Some(Self::Error),
             RunEnd::CpuLimit | RunEnd::WallLimit => Some(Self::Time),
             RunEnd::MemoryLimit => Some(Self::Memory),

@@ -175,8 +175,8 @@ fn program_verdict(end: &RunEnd, outcome: &Outcome) -> Verdict {
     match end {
         RunEnd::Exited(0) => Verdict::Accepted,
         RunEnd::TraceLimit if had_all => Verdict::Accepted,
-        RunEnd::Cancelled => Verdict::NotRun,
-        RunEnd::Exited(_) | RunEnd::Signalled(_) => Verdict::RuntimeError,
+        RunEnd::Canceled => Verdict::NotRun,
+        RunEnd::Exited(_) | RunEnd::Signaled(_) => Verdict::RuntimeError,
         RunEnd::CouldNotStart(_) => Verdict::Unusable,
         RunEnd::CpuLimit | RunEnd::WallLimit => Verdict::TimeLimit,
         RunEnd::MemoryLimit => Verdict::MemoryLimit,

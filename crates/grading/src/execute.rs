@@ -76,7 +76,7 @@ impl Runner<'_> {
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
         loop {
-            if self.cancellation.is_cancelled() {
+            if self.cancellation.is_canceled() {
                 return task.without_run(Verdict::NotRun, Reason::Stopped);
             }
             match self.grade_once(program, task, on_step) {
@@ -97,7 +97,7 @@ impl Runner<'_> {
         let mut watch = Stopwatch::new(self.timings);
         let (running, folder) = self.start(&program.program, program.identity, task)?;
         let is_untouched = running.is_in_memory();
-        let registered = self.cancellation.register(running.canceller());
+        let registered = self.cancellation.register(running.canceler());
         let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         drop(registered);
         if let Some(timings) = self.timings {
@@ -180,7 +180,7 @@ impl Runner<'_> {
         keep: usize,
     ) -> Result<(Vec<u8>, sandbox::RunOutcome), String> {
         let (running, _folder) = self.start(program, None, task)?;
-        let _registered = self.cancellation.register(running.canceller());
+        let _registered = self.cancellation.register(running.canceler());
         let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         let mut kept = Vec::new();
         let (trace, _) = self.open_trace(&left)?;

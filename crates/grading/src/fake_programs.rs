@@ -75,7 +75,7 @@ fn run_fake(job: &Job) -> FakeRun {
         }
         Some("trailing") => FakeRun::with_trace([&right_trace(job)[..], b"more"].concat()),
         Some("crash-after-right-trace") => {
-            FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::with_trace(right_trace(job)) }
+            FakeRun { ended: RunEnd::Signaled(11), ..FakeRun::with_trace(right_trace(job)) }
         }
         Some("exit-1-after-right-trace") => {
             FakeRun { ended: RunEnd::Exited(1), ..FakeRun::with_trace(right_trace(job)) }
@@ -101,7 +101,7 @@ fn run_fake(job: &Job) -> FakeRun {
                 moved.0
             });
             match step {
-                Some(step) => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::with_trace(trace(&scene, step - 1)) },
+                Some(step) => FakeRun { ended: RunEnd::Signaled(11), ..FakeRun::with_trace(trace(&scene, step - 1)) },
                 None => FakeRun::with_trace(right_trace(job)),
             }
         }
@@ -113,8 +113,8 @@ fn run_fake(job: &Job) -> FakeRun {
             let ended = match name.rsplit('-').next() {
                 Some("exits") => RunEnd::Exited(0),
                 Some("fails") => RunEnd::Exited(1),
-                Some("crashes") => RunEnd::Signalled(11),
-                Some("unread") => RunEnd::Signalled(13),
+                Some("crashes") => RunEnd::Signaled(11),
+                Some("unread") => RunEnd::Signaled(13),
                 Some("stopped") => RunEnd::TraceLimit,
                 Some("sleeps") => RunEnd::WallLimit,
                 other => panic!("no end {other:?}"),

@@ -365,7 +365,7 @@ impl<'a> SubmissionGrading<'a> {
                 without_run(Verdict::Unusable, Reason::Unusable(reason.clone()))
             }
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
-                match shared.cancellation.is_cancelled() {
+                match shared.cancellation.is_canceled() {
                     true => without_run(Verdict::NotRun, Reason::Stopped),
                     false => without_run(Verdict::CompileError, Reason::DoesNotBuild),
                 }

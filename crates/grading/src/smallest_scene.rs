@@ -132,7 +132,7 @@ impl Shrinker<'_> {
         let start = processor_time(ProcessorTimeScope::Thread);
         let is_over = |spent: Duration| {
             let own = processor_time(ProcessorTimeScope::Thread).saturating_sub(start);
-            spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
+            spent + own >= self.limits.time || self.runner.cancellation.is_canceled()
         };
         for task in tasks.into_iter().take(MAX_SCENES) {
             let observed = self.observe(&task.scene, &mut spent)?;
@@ -147,7 +147,7 @@ impl Shrinker<'_> {
                 }
                 runs += 1;
                 let observed = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
-                let observed = observed.filter(|_| !self.runner.cancellation.is_cancelled())?;
+                let observed = observed.filter(|_| !self.runner.cancellation.is_canceled())?;
                 let is_reproduced = reason.is_reproduced(scene, &observed, is_only_reason);
                 held = if is_reproduced { Some(observed) } else { held.take() };
                 Some(is_reproduced)

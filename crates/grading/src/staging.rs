@@ -221,7 +221,7 @@ pub(super) fn build(
         .limits(limits)
         .folder_in_memory();
     let running = backend.start(&job).map_err(|error| error.to_string())?;
-    let _registered = cancellation.register(running.canceller());
+    let _registered = cancellation.register(running.canceler());
     let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
     let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
     let output = truncate(&printed, MAX_OUTPUT_BYTES);

@@ -201,7 +201,7 @@ mod tests {
     /// `(a + b) - a` with a large `a`: the remaining part of `b` may deviate by a rounding of `a`, and the bound must
     /// cover it.
     #[test]
-    fn cancelled_terms_keep_their_weight() {
+    fn canceled_terms_keep_their_weight() {
         let (a, b) = (BoundedValue::from_exact(1e10), BoundedValue::from_exact(0.1));
         let left = (a + b) - a;
         assert!((left.value - 0.1).abs() > 1e-8);

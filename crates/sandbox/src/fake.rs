@@ -48,7 +48,7 @@ impl FakeRun {
         if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
             job_files::write_file(job, name, &self.trace)?;
         }
-        let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != RunEnd::Cancelled;
+        let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != RunEnd::Canceled;
         let outcome = RunOutcome {
             ended: if is_over { RunEnd::TraceLimit } else { self.ended },
             cpu: self.cpu,
@@ -90,7 +90,7 @@ mod tests {
         for (ended, beyond) in [
             (RunEnd::Exited(1), RunEnd::TraceLimit),
             (RunEnd::WallLimit, RunEnd::TraceLimit),
-            (RunEnd::Cancelled, RunEnd::Cancelled),
+            (RunEnd::Canceled, RunEnd::Canceled),
         ] {
             let ending = ended.clone();
             let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::with_trace(*b"frames") });

@@ -57,7 +57,7 @@ pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
 pub use outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem};
 pub use own_files::{MARK_BACKWARDS, is_own_file};
-pub use running_program::{Canceller, RemainingFolder, RunningProgram};
+pub use running_program::{Canceler, RemainingFolder, RunningProgram};
 pub use sandbox_error::SandboxError;
 pub use supervisor::supervisor_main;
 #[doc(hidden)]

@@ -41,7 +41,7 @@ mod tests {
     #[test]
     fn an_ending_reads_as_a_sentence_about_the_program() {
         assert_eq!(
-            RunEnd::Signalled(libc::SIGSEGV).to_string(),
+            RunEnd::Signaled(libc::SIGSEGV).to_string(),
             "was killed by signal 11 (SIGSEGV: it accessed memory that does not belong to it)"
         );
         assert_eq!(RunEnd::TraceLimit.to_string(), "wrote more than allowed to the trace");

@@ -21,7 +21,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
         return RunEnd::CouldNotStart(start_problem(errno));
     }
     match &report.cause {
-        Some(RunEnd::Cancelled) => return RunEnd::Cancelled,
+        Some(RunEnd::Canceled) => return RunEnd::Canceled,
         _ if report.exceeds_trace_limit => return RunEnd::TraceLimit,
         Some(cause) => return cause.clone(),
         None => {}
@@ -49,7 +49,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
     }
     if let Some(signal) = signal {
         let refused = signal == libc::SIGABRT && lacks_memory(&text);
-        return if refused { RunEnd::MemoryLimit } else { RunEnd::Signalled(signal) };
+        return if refused { RunEnd::MemoryLimit } else { RunEnd::Signaled(signal) };
     }
     let code = libc::WEXITSTATUS(report.status);
     if code != 0 && lacks_memory(&text) {
@@ -141,7 +141,7 @@ mod tests {
     fn the_reason_to_kill_outranks_the_kill() {
         let report = Report { status: libc::SIGKILL, cause: Some(RunEnd::WallLimit), ..Report::default() };
         assert_eq!(decide_end(&order(), &report, b""), RunEnd::WallLimit);
-        assert_eq!(decide_end(&order(), &Report { cause: None, ..report }, b""), RunEnd::Signalled(libc::SIGKILL));
+        assert_eq!(decide_end(&order(), &Report { cause: None, ..report }, b""), RunEnd::Signaled(libc::SIGKILL));
     }
 
     #[test]
@@ -150,8 +150,8 @@ mod tests {
             let report = Report { cause, exceeds_trace_limit: true, status: libc::SIGXFSZ, ..Report::default() };
             assert_eq!(decide_end(&order(), &report, b""), RunEnd::TraceLimit);
         }
-        let report = Report { cause: Some(RunEnd::Cancelled), exceeds_trace_limit: true, ..Report::default() };
-        assert_eq!(decide_end(&order(), &report, b""), RunEnd::Cancelled);
+        let report = Report { cause: Some(RunEnd::Canceled), exceeds_trace_limit: true, ..Report::default() };
+        assert_eq!(decide_end(&order(), &report, b""), RunEnd::Canceled);
     }
 
     #[test]
@@ -159,7 +159,7 @@ mod tests {
         for (signal, expected) in [
             (libc::SIGXCPU, RunEnd::CpuLimit),
             (libc::SIGXFSZ, RunEnd::FolderLimit),
-            (libc::SIGSEGV, RunEnd::Signalled(libc::SIGSEGV)),
+            (libc::SIGSEGV, RunEnd::Signaled(libc::SIGSEGV)),
         ] {
             assert_eq!(decide_end(&order(), &Report { status: signal, ..Report::default() }, b""), expected);
         }
@@ -196,7 +196,7 @@ mod tests {
         assert_eq!(decide_end(&order(), &aborted, words), RunEnd::MemoryLimit);
         assert_eq!(
             decide_end(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"),
-            RunEnd::Signalled(libc::SIGABRT)
+            RunEnd::Signaled(libc::SIGABRT)
         );
         assert_eq!(
             decide_end(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"),
@@ -204,9 +204,9 @@ mod tests {
         );
         assert_eq!(decide_end(&order(), &exit(0), b"MemoryError\n"), RunEnd::Exited(0));
         let long_ago = [&words[..], b"caught it\n1\n2\n3\n"].concat();
-        assert_eq!(decide_end(&order(), &aborted, &long_ago), RunEnd::Signalled(libc::SIGABRT));
+        assert_eq!(decide_end(&order(), &aborted, &long_ago), RunEnd::Signaled(libc::SIGABRT));
         let crashed = Report { status: libc::SIGSEGV, ..Report::default() };
-        assert_eq!(decide_end(&order(), &crashed, words), RunEnd::Signalled(libc::SIGSEGV));
+        assert_eq!(decide_end(&order(), &crashed, words), RunEnd::Signaled(libc::SIGSEGV));
     }
 
     #[test]

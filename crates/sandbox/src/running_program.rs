@@ -27,7 +27,7 @@ type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 pub struct RunningProgram {
     state: RunState,
     folder: RemainingFolder,
-    canceller: Canceller,
+    canceler: Canceler,
 }
 
 #[derive(Debug)]
@@ -56,14 +56,14 @@ impl RunningProgram {
     pub(super) fn new(supervised: SupervisedRun, control: UnixStream, memory_folder: Option<OpenFolder>) -> Self {
         let folder = RemainingFolder { memory_folder, path: wire::to_path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
-        Self { state: RunState::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
+        Self { state: RunState::Supervised(Box::new(supervised)), folder, canceler: Canceler { control } }
     }
 
     /// Creates the value for a run in the folder `path` whose outcome is already known.
     pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
         let folder = RemainingFolder { memory_folder: None, path, _keeper: None };
-        let canceller = Canceller { control: ControlSocket::default() };
-        Self { state: RunState::Known(Box::new(outcome)), folder, canceller }
+        let canceler = Canceler { control: ControlSocket::default() };
+        Self { state: RunState::Known(Box::new(outcome)), folder, canceler }
     }
 
     /// Returns whether the program works in a copy of its working folder in memory. The folder on disk then does not
@@ -73,8 +73,8 @@ impl RunningProgram {
     }
 
     /// Returns a handle that stops the program. It can be used in other threads, and on Ctrl-C.
-    pub fn canceller(&self) -> Canceller {
-        self.canceller.clone()
+    pub fn canceler(&self) -> Canceler {
+        self.canceler.clone()
     }
 
     /// Waits until the program and all its processes have ended.
@@ -104,7 +104,7 @@ impl RunningProgram {
     fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<IdleKeeper>), SandboxError> {
         let answer = receive_end(&mut supervised.answers);
         // A supervisor that has reported needs no further commands.
-        drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
+        drop(self.canceler.control.lock().unwrap_or_else(PoisonError::into_inner).take());
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
             Err(_) => {
@@ -175,7 +175,7 @@ impl RemainingFolder {
 impl Drop for RunningProgram {
     fn drop(&mut self) {
         if let RunState::Supervised(supervised) = std::mem::replace(&mut self.state, RunState::Taken) {
-            self.canceller.cancel();
+            self.canceler.cancel();
             // The caller no longer needs the program, so errors do not matter.
             let _ = self.conclude(*supervised);
         }
@@ -195,12 +195,12 @@ fn receive_end(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
 
 /// A handle that stops a program. If the program has ended, the handle does nothing.
 #[derive(Debug, Clone)]
-pub struct Canceller {
+pub struct Canceler {
     control: ControlSocket,
 }
 
-impl Canceller {
-    /// Kills the program and all its processes. Then [`RunningProgram::wait`] returns `Cancelled`.
+impl Canceler {
+    /// Kills the program and all its processes. Then [`RunningProgram::wait`] returns `Canceled`.
     pub fn cancel(&self) {
         if let Some(control) = self.control.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
             // This fails if the supervisor has ended, which does not matter.

@@ -38,7 +38,7 @@ pub enum WrongReason {
 impl WrongReason {
     /// Returns the reason of a program that does not end normally, or `None` if it ends normally.
     pub fn from_end(end: &RunEnd) -> Option<Self> {
-        let signal = if let RunEnd::Signalled(signal) = end { Some(*signal) } else { None };
+        let signal = if let RunEnd::Signaled(signal) = end { Some(*signal) } else { None };
         FailureKind::from_end(end).map(|failure| Self::Ended(failure, signal))
     }
 

@@ -101,12 +101,12 @@ fn one_body_is_tried_first() {
 
 #[test]
 fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
-    use fosssim_ended::RunEnd::{CpuLimit, MemoryLimit, Signalled, WallLimit};
+    use fosssim_ended::RunEnd::{CpuLimit, MemoryLimit, Signaled, WallLimit};
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let seen = |ended| Observation { trace: Vec::new(), ended };
     let reason = |ended| WrongReason::first_reason(scene, &seen(ended)).expect("wrong");
-    assert!(reason(Signalled(11)).is_reproduced(scene, &seen(Signalled(11)), false));
-    assert!(!reason(Signalled(11)).is_reproduced(scene, &seen(Signalled(8)), false));
+    assert!(reason(Signaled(11)).is_reproduced(scene, &seen(Signaled(11)), false));
+    assert!(!reason(Signaled(11)).is_reproduced(scene, &seen(Signaled(8)), false));
     assert!(reason(CpuLimit).is_reproduced(scene, &seen(WallLimit), false));
     assert!(!reason(CpuLimit).is_reproduced(scene, &seen(MemoryLimit), false));
     assert_eq!(WrongReason::first_reason(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));

@@ -179,10 +179,10 @@ impl GradingSession<'_> {
         match fault {
             Some(fault) => Err(fault),
             None => {
-                if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_cancelled()) {
+                if let Some(sharding) = self.sharding.as_ref().filter(|_| !self.cancellation.is_canceled()) {
                     sharding.end(&grades, &self.skipped)?;
                 }
-                let code = if self.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit_code(&grades) };
+                let code = if self.cancellation.is_canceled() { exit::INTERRUPTED } else { exit_code(&grades) };
                 Ok((grades, code))
             }
         }
@@ -197,7 +197,7 @@ impl GradingSession<'_> {
                 let (folder, all) = (folder.display(), format_count(all as u64, "result"));
                 console::print_error(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
             }
-            if self.cancellation.is_cancelled() {
+            if self.cancellation.is_canceled() {
                 let folder = folder.display();
                 let line = format!("stopped; results are kept in {folder}: the same command continues from there\n");
                 console::print_error(&line);
@@ -337,7 +337,7 @@ impl GradingSession<'_> {
         loop {
             let last_graded = find_change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
-            if self.cancellation.is_cancelled() {
+            if self.cancellation.is_canceled() {
                 return Ok(code);
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
@@ -346,7 +346,7 @@ impl GradingSession<'_> {
             let mut last = last_graded.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
-                if self.cancellation.is_cancelled() {
+                if self.cancellation.is_canceled() {
                     return Ok(exit::INTERRUPTED);
                 }
                 let now = find_change_stamps(submissions);

@@ -103,7 +103,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         };
         let grades = batch::grade_all(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
         console::report(&Format::Text.render(&grades))?;
-        if cancellation.is_cancelled() {
+        if cancellation.is_canceled() {
             return Ok(exit::INTERRUPTED);
         }
         verdicts.push(grades.iter().map(|grade| grade.verdict).max());

@@ -157,7 +157,7 @@ impl ProgramUnderTest {
             let limits = if stopped == 0 { &long } else { &short };
             let run = self.runner(limits).collect_trace(&self.program, task, MAX_KEPT_BYTES);
             let (trace, outcome) = run.map_err(anyhow::Error::msg)?;
-            if self.cancellation.is_cancelled() {
+            if self.cancellation.is_canceled() {
                 return Ok(None);
             }
             if let RunEnd::CouldNotStart(problem) = &outcome.ended {

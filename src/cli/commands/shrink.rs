@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     }
     report(&examined.diagnosis, &examined.cards, arguments.format, None)?;
     // If the user interrupts the search, the best scene so far has been reported.
-    Ok(if program.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
+    Ok(if program.cancellation.is_canceled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Adds to a program's report the smallest scene for each cause, and its card. The scenes are made from those that

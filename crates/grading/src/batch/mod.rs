@@ -73,7 +73,7 @@ pub enum GradeFault {
     Reporting(CaughtPanic),
 }
 
-/// Grades all submissions, and returns the grades in the same order. If the grading is cancelled, the scenes that were
+/// Grades all submissions, and returns the grades in the same order. If the grading is canceled, the scenes that were
 /// not run are marked in the grades. Without `results`, nothing is reused or stored.
 pub fn grade_all(
     grader: &Grader<'_>,

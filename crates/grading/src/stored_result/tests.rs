@@ -234,12 +234,12 @@ fn every_reason_and_every_end_reads_back() {
     }
     for ended in [
         RunEnd::Exited(-1),
-        RunEnd::Signalled(11),
+        RunEnd::Signaled(11),
         RunEnd::CpuLimit,
         RunEnd::TraceLimit,
         RunEnd::Violation { call: "ptrace".to_owned() },
         RunEnd::CouldNotStart(missing),
-        RunEnd::Cancelled,
+        RunEnd::Canceled,
     ] {
         let result = SceneResult {
             ended: Some(ended),

@@ -41,7 +41,7 @@ fn a_limit_says_how_far_the_trace_came() {
         Verdict::RuntimeError,
         Reason::Program(ProgramProgress { limit: None, steps: 4 }),
     );
-    let crash = SceneResult { ended: Some(RunEnd::Signalled(11)), ..crash };
+    let crash = SceneResult { ended: Some(RunEnd::Signaled(11)), ..crash };
     assert!(summarize(&crash).ends_with("; the last complete record belongs to step 4 of 15"), "{}", summarize(&crash));
     assert!(!describe_ending(&crash).contains("step"), "the same in many scenes: {}", describe_ending(&crash));
     assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));

@@ -56,7 +56,7 @@ impl ExpectedEnd {
     pub(super) fn matches(&self, end: &RunEnd) -> bool {
         let detail = match end {
             RunEnd::Exited(code) => code.to_string(),
-            RunEnd::Signalled(signal) => signal.to_string(),
+            RunEnd::Signaled(signal) => signal.to_string(),
             // Usually the forbidden call is named. If calls cannot be named on this host, any violation is accepted.
             RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),

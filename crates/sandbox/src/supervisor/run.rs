@@ -353,7 +353,7 @@ impl Run {
     fn run_commands(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) => self.record_kill_reason(true, RunEnd::Cancelled),
+            Ok(1) => self.record_kill_reason(true, RunEnd::Canceled),
             _ => self.is_orphaned = true,
         }
     }

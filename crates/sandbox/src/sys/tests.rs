@@ -22,7 +22,7 @@ fn descriptors_travel_through_a_socket() {
 }
 
 #[test]
-fn groups_and_init_are_never_signalled() {
+fn groups_and_init_are_never_signaled() {
     for pid in [-1, 0, 1] {
         assert!(kill(pid, 0).is_err());
     }
