@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     judge::replay::{Progress, Remark},
-    report::{style::Style, wrap},
+    report::{line_width, style::Style},
 };
 use anyhow::{Context, Result};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
@@ -87,7 +87,7 @@ pub(super) fn width() -> Option<usize> {
 /// Fails like [`print()`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
-        Some(width) => print(wrap::wrap(text, width)),
+        Some(width) => print(line_width::wrap(text, width)),
         None => print(text),
     }
 }

@@ -1,6 +1,6 @@
 //! Judges a trace once, and keeps all data for later requests.
 use crate::{
-    gather::{Evidence, Focus, gather},
+    evidence::{Evidence, Focus, gather},
     rulings::{StepRuling, StepRulings},
 };
 use fosssim_judge::{

@@ -31,8 +31,8 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod evidence;
 mod examined_trace;
-mod gather;
 mod inspected_pair;
 mod inspected_step;
 mod polynomial_matching;
@@ -41,8 +41,8 @@ mod rulings;
 mod tests;
 mod track;
 
+pub use evidence::{Evidence, Focus, Step, StepClass, gather};
 pub use examined_trace::{ExaminedTrace, KeptPart, examine};
-pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{CallLog, InspectedCall, InspectedPass, InspectedStep, MergedZones};
 pub use rulings::{StepRuling, StepRulings};

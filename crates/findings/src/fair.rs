@@ -19,7 +19,8 @@ pub enum FairVerdict {
 /// The reason why a trace is rejected as a whole, and not because of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum FairRefusal {
+#[schemars(rename = "FairRefusal")]
+pub enum FairRejection {
     /// The trace can't be read to its end.
     Stopped,
     /// The trace is damaged. The original reads it, because it skips damage.
@@ -93,7 +94,7 @@ pub struct Judgment {
     /// The verdict by the fair rules.
     pub verdict: FairVerdict,
     /// The reason why the whole trace is rejected, if there is one.
-    pub refusal: Option<FairRefusal>,
+    pub rejection: Option<FairRejection>,
     /// The findings by the fair rules.
     pub findings: BookFindings,
     /// The first step that was not judged, because it would take too much work, or because the scene has no result

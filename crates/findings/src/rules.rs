@@ -72,9 +72,9 @@ impl Outcome {
     /// Returns the verdict by a rule book. If the fair rules were not applied, it is that by the original's rules.
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
-            (Book::Fair, Some(fair)) => match (fair.verdict, fair.refusal) {
+            (Book::Fair, Some(fair)) => match (fair.verdict, fair.rejection) {
                 (fair::FairVerdict::Accepted, _) => Ruling::Accepted,
-                (fair::FairVerdict::Rejected, None | Some(fair::FairRefusal::Undecided)) => Ruling::WrongAnswer,
+                (fair::FairVerdict::Rejected, None | Some(fair::FairRejection::Undecided)) => Ruling::WrongAnswer,
                 (fair::FairVerdict::Rejected, Some(_)) => Ruling::BadTrace,
                 (fair::FairVerdict::None, _) => Ruling::Undecided,
             },

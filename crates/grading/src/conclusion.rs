@@ -11,7 +11,7 @@ use super::{
 };
 use fosssim_judge::{
     Book, Outcome, Rules, Ruling, Stop,
-    fair::{self, FairRefusal},
+    fair::{self, FairRejection},
     kept_trace::KeptTrace,
 };
 use fosssim_mistakes::{
@@ -233,15 +233,15 @@ fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
         Some(first) => WrongTrace::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
         None if judged.damaged_steps > 0 => WrongTrace::Damaged,
         None if judged.ruling(rules.official()) == Ruling::Undecided => WrongTrace::Undecided,
-        None if judged.fair.as_ref().is_some_and(|fair| fair.refusal.is_some()) => WrongTrace::Borderline,
+        None if judged.fair.as_ref().is_some_and(|fair| fair.rejection.is_some()) => WrongTrace::Borderline,
         None => WrongTrace::SmallErrors,
     }
 }
 
 /// Returns the reason why the fair rules reject a trace as a whole, although the original reads it to its end.
 fn fair_rejection_reason(judged: &Outcome) -> BadTrace {
-    match judged.fair.as_ref().and_then(|fair| fair.refusal) {
-        Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
+    match judged.fair.as_ref().and_then(|fair| fair.rejection) {
+        Some(FairRejection::TrailingBytes) => BadTrace::TrailingBytes,
         _ => BadTrace::Damaged,
     }
 }

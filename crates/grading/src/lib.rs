@@ -25,8 +25,6 @@ pub mod config;
 #[cfg(target_os = "linux")]
 pub mod coverage;
 #[cfg(target_os = "linux")]
-mod execute;
-#[cfg(target_os = "linux")]
 mod failed_scene;
 #[cfg(target_os = "linux")]
 pub mod failure_cause;
@@ -51,6 +49,8 @@ mod recipe;
 pub mod recording;
 #[cfg(target_os = "linux")]
 pub mod results;
+#[cfg(target_os = "linux")]
+mod runner;
 #[cfg(target_os = "linux")]
 pub mod scene_files;
 pub mod score;
@@ -78,10 +78,10 @@ mod upload;
 #[cfg(target_os = "linux")]
 pub use self::{
     cancellation::Cancellation,
-    execute::Runner,
     grader::{Grader, Submission},
     key::{ResultKey, running_build},
     program_file::ProgramFile,
+    runner::Runner,
     temporary_folders::Folders,
 };
 pub use fosssim_findings::{

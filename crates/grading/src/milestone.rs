@@ -1,6 +1,6 @@
 //! Infers the milestone for which a program was written, from the scenes that it accepts. A starter library exits with
 //! an error if it does not know an integrator or a collision type, no matter what its student wrote.
-use super::{config::RunLimits, execute::Runner, task::SceneTask};
+use super::{config::RunLimits, runner::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
     scene,

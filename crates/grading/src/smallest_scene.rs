@@ -1,6 +1,6 @@
 //! Finds the smallest scene for each cause of wrong results. The program is run in the sandbox on smaller and smaller
 //! scenes.
-use super::{config::RunLimits, execute::Runner, failure_cause::FailureKind, task::SceneTask};
+use super::{config::RunLimits, failure_cause::FailureKind, runner::Runner, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest_scene::SmallestScene;
 use fosssim_judge::{Stop, kept_trace::MAX_KEPT_BYTES, replay::Options};

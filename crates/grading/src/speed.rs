@@ -5,9 +5,9 @@
 //! course's original.
 use super::{
     config,
-    execute::Runner,
     grader::{SubmissionGrading, program_name},
     result::SceneResult,
+    runner::Runner,
     staging::StagedProgram,
     task::SceneTask,
     verdict::Verdict,

@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     }
     let (scene, identity) = match load(arguments) {
         Ok(loaded) => loaded,
-        Err(refusal) => return reject_scene(arguments, &refusal),
+        Err(rejection) => return reject_scene(arguments, &rejection),
     };
     if let Some(message) = find_unsupported(arguments, &scene.scene) {
         return print_error(message);
@@ -123,14 +123,17 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
     Ok((original::read(&bytes)?, Identity::from_metadata(&metadata)))
 }
 
-fn reject_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
-    if refusal.kind == RejectionKind::Crash {
+fn reject_scene(arguments: &Arguments, rejection: &Rejection) -> u8 {
+    if rejection.kind == RejectionKind::Crash {
         // The original crashes with an uncaught exception in this case.
         let name = arguments.scene.display();
-        return print_error(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
+        return print_error(format!(
+            "{name}: {}; `fosssim-oracle simulate {name}` says where\n",
+            rejection.explanation
+        ));
     }
-    crate::print_error(&refusal.stderr);
-    refusal.exit_code
+    crate::print_error(&rejection.stderr);
+    rejection.exit_code
 }
 
 /// Returns the reason why a run is not supported, or `None` if it is supported. A run may need a window or too much

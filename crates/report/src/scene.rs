@@ -1,17 +1,17 @@
 //! The list of scenes, one line for each.
 use super::{
+    line_width,
     number::format_count,
     style::{Style, TextStyle},
-    wrap,
 };
 use crate::untrusted_text::to_one_line;
 use fosssim_model::scene::Scene;
 
 /// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
 pub fn list_scenes(scenes: &[(&str, Scene)], style: Style) -> String {
-    let width = scenes.iter().map(|(name, _)| wrap::count_columns(name)).max().unwrap_or(0);
+    let width = scenes.iter().map(|(name, _)| line_width::count_columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
-        let blanks = " ".repeat(width - wrap::count_columns(name));
+        let blanks = " ".repeat(width - line_width::count_columns(name));
         let size = style.paint(TextStyle::Faint, &format!("({})", describe_size(scene)));
         let words =
             scene.description.as_deref().map(|text| to_one_line(first_sentence(text)) + " ").unwrap_or_default();

@@ -1,7 +1,7 @@
 //! A table of text with aligned columns.
 use super::{
+    line_width::count_columns,
     style::{Style, TextStyle},
-    wrap::count_columns,
 };
 
 /// A cell of a table, with its text and its style.

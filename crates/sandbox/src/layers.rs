@@ -128,7 +128,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
         new_report(
             Layer::Execution,
             probe.execution.clone(),
-            if probe.from_memory {
+            if probe.executes_from_memory {
                 "in memory, because the temporary folder is mounted noexec; build steps cannot run compiled files"
             } else {
                 "programs run from copies in the temporary folder"

@@ -187,7 +187,7 @@ pub(super) struct Probe {
     /// The reason why copies of programs cannot be executed, if there is one.
     pub(super) execution: Option<String>,
     /// Whether copies must be executed in memory, because nothing can be executed in the temporary folder.
-    pub(super) from_memory: bool,
+    pub(super) executes_from_memory: bool,
     pub(super) namespaces: Option<String>,
     pub(super) group: Option<String>,
     /// The names of the quantities that the kernel can limit for a control group.

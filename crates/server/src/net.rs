@@ -34,11 +34,11 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
 }
 
 /// Returns a client for requests to services that an administrator configured. It follows no redirections.
-pub(crate) fn new_agent(over_http: bool, timeout: Duration) -> Agent {
+pub(crate) fn new_agent(allows_http: bool, timeout: Duration) -> Agent {
     Agent::config_builder()
         .http_status_as_error(false)
         .max_redirects(0)
-        .https_only(!over_http)
+        .https_only(!allows_http)
         .timeout_global(Some(timeout))
         .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
         .build()

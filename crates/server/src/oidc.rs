@@ -141,15 +141,15 @@ impl Provider {
     ) -> anyhow::Result<Self> {
         let address = Url::parse(&issuer).with_context(|| format!("{issuer} is not a URL"))?;
         let host = address.host_str().unwrap_or_default();
-        let over_http = address.scheme() == "http" && matches!(host, "127.0.0.1" | "[::1]" | "localhost");
-        ensure(over_http || address.scheme() == "https", anyhow!("the issuer must be https://..., not {issuer}"))?;
+        let allows_http = address.scheme() == "http" && matches!(host, "127.0.0.1" | "[::1]" | "localhost");
+        ensure(allows_http || address.scheme() == "https", anyhow!("the issuer must be https://..., not {issuer}"))?;
         Ok(Self {
             label: label.unwrap_or_else(|| host.to_owned()),
             issuer: IssuerUrl::new(issuer)?,
             client: ClientId::new(client),
             secret: ClientSecret::new(secret),
             domain: domain.map(|domain| domain.to_ascii_lowercase()),
-            agent: net::new_agent(over_http, ANSWER_TIMEOUT),
+            agent: net::new_agent(allows_http, ANSWER_TIMEOUT),
             published: Mutex::default(),
         })
     }

@@ -66,15 +66,15 @@ problems! {
         "the request came from another site, or does not say where it came from",
         "send it from this site's own pages, or with a token instead of a cookie";
     /// A sign-in from a learning platform is rejected.
-    refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
+    rejected_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
     /// A sign-in from a learning platform is not possible until somebody does what the remedy says.
-    refused_until(detail: impl Into<String>, remedy: &str): 403, "launch-refused", "This sign-in is not possible",
+    rejected_until(detail: impl Into<String>, remedy: &str): 403, "launch-refused", "This sign-in is not possible",
         detail,
         remedy;
     /// A sign-in at a provider is rejected.
-    refused_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
+    rejected_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
         detail,
         "sign in again, or with a link from the course's staff; if it happens again, tell the administrator";
     /// A learning platform did not fulfill a request.

@@ -3,7 +3,7 @@ use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{FilePlace, open_for_writing},
-    report::{formats::Format, grade, page::Audience, style::Style, wrap},
+    report::{formats::Format, grade, line_width, page::Audience, style::Style},
     suite::{Grade, SkippedEntry, catch_panic, suggestions},
 };
 use anyhow::{Context, Result, bail};
@@ -135,7 +135,7 @@ impl Results<'_> {
             let lines = || grade::json_lines(grades, skipped);
             let class = || {
                 let missing = grade::list_not_graded(grades, skipped, Style::Plain);
-                wrap::wrap(&(grade::render_class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
+                line_width::wrap(&(grade::render_class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
             };
             let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
                 ("grades.csv", &by_submission),

@@ -55,7 +55,8 @@ pub enum StageFault {
         wrong: WrongResponses,
         /// Whether the contacts are in impulse rounds, each of which starts from the states that the round before has
         /// changed.
-        in_rounds: bool,
+        #[serde(rename = "in_rounds")]
+        only_in_rounds: bool,
     },
     /// After several contacts in one step the state is wrong, although isolated contacts are right.
     ManyContacts,
@@ -392,7 +393,7 @@ impl StageFault {
                 ChangeCause::JacobiansOrIntegrator => &[Area::Jacobians, Area::Integrator],
             },
             Self::ContactVectors { .. } => &[Area::ContactVector],
-            Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
+            Self::Responses { only_in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
             // In a hybrid step, the trace contains no contact vector.
             Self::Responses { wrong: WrongResponses::Across(_), .. } => {
                 &[Area::ContactVector, Area::Response, Area::ImpulseLoop]

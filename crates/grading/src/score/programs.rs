@@ -1,7 +1,6 @@
 //! Completes the grade of a program that was run.
 use crate::{
     config::Visibility,
-    execute::Runner,
     failure_cause::{FailureKind, Features, LocatedFailure, TriedScene, locate_failure},
     grade::Grade,
     grader::{SubmissionGrading, lock},
@@ -10,6 +9,7 @@ use crate::{
     plan::PlannedGroup,
     program_file,
     result::{Reason, RunEnd, SceneResult},
+    runner::Runner,
     score, skipped_scenes,
     smallest_scene::{
         DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, is_repetition,

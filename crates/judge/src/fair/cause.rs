@@ -4,7 +4,7 @@
 //! oracle-behavior.md 4 to 6; numerics.md 1 shows why they cannot be trusted.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
-    fair::{FairRefusal, FairVerdict, Form, Judgment},
+    fair::{FairRejection, FairVerdict, Form, Judgment},
 };
 use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
@@ -52,9 +52,9 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 
 /// Returns the reason why parity accepts a trace that fair rejects.
 fn explain_parity_acceptance(outcome: &Outcome, judgment: &Judgment) -> Cause {
-    match judgment.refusal {
-        Some(FairRefusal::Damaged) => return Cause::Damage,
-        Some(FairRefusal::TrailingBytes) if judgment.findings.counts.total() == 0 => return Cause::TrailingBytes,
+    match judgment.rejection {
+        Some(FairRejection::Damaged) => return Cause::Damage,
+        Some(FairRejection::TrailingBytes) if judgment.findings.counts.total() == 0 => return Cause::TrailingBytes,
         _ => {}
     }
     let Some(first) = &judgment.findings.first_divergence else { return Cause::SmallErrors };

@@ -6,7 +6,7 @@ use super::{
 };
 use fosssim_findings::{
     Finding, FindingDetail, FindingKind, Outcome, Stop,
-    fair::{FairRefusal, FairVerdict, Form, Judgment},
+    fair::{FairRejection, FairVerdict, Form, Judgment},
 };
 use fosssim_model::sim::{PairKind, PairKindMap, StepError};
 
@@ -181,23 +181,23 @@ impl JudgmentBuilder {
         if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
             self.judgment.first_unjudged_step.get_or_insert(step);
         }
-        let refusal = if matches!(outcome.stop, Some(Stop::Trace { .. })) {
-            Some(FairRefusal::Stopped)
+        let rejection = if matches!(outcome.stop, Some(Stop::Trace { .. })) {
+            Some(FairRejection::Stopped)
         } else if outcome.damage.is_some() {
-            Some(FairRefusal::Damaged)
+            Some(FairRejection::Damaged)
         } else if outcome.trailing_bytes {
-            Some(FairRefusal::TrailingBytes)
+            Some(FairRejection::TrailingBytes)
         } else {
-            self.is_undecided().then_some(FairRefusal::Undecided)
+            self.is_undecided().then_some(FairRejection::Undecided)
         };
-        self.judgment.refusal = refusal;
+        self.judgment.rejection = rejection;
         self.count_wrong_pending();
         let factors = self.factors.values().flatten().filter_map(FactorStatistics::range);
         let factor = factors.reduce(|[low, high], [l, h]| [low.min(l), high.max(h)]);
         let mut judgment = self.judgment;
         judgment.factor = factor.filter(|range| range.iter().any(|factor| (factor - 1.0).abs() > 1e-9));
         judgment.findings.conclude();
-        judgment.verdict = if judgment.refusal.is_some() || judgment.findings.counts.total() > 0 {
+        judgment.verdict = if judgment.rejection.is_some() || judgment.findings.counts.total() > 0 {
             FairVerdict::Rejected
         } else if outcome.steps_judged == outcome.steps && judgment.first_unjudged_step.is_none() {
             FairVerdict::Accepted

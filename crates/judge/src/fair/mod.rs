@@ -56,7 +56,7 @@ pub use contact::certain_decision;
 pub(super) use context::{Context, Records};
 pub use fosssim_findings::{
     Cause,
-    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgment, Shares},
+    fair::{Borderline, FairRejection, FairVerdict, Form, Judgment, Shares},
 };
 pub(super) use judgment::JudgmentBuilder;
 pub(super) use probe::{PERTURBED_RUNS, perturb};

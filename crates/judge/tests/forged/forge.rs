@@ -458,10 +458,10 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     // A program that misses a collision may end with two balls at the same position.
     let beyond = counts.get(FindingKind::Position).min(lost);
     let is_explained = lost + gone + beyond == counts.total();
-    let is_documented = judged.refusal.is_none() && is_explained;
+    let is_documented = judged.rejection.is_none() && is_explained;
     (judged.verdict != FairVerdict::Accepted && !is_documented).then(|| {
         let first = judged.findings.first_divergence.map(|first| first.to_string());
-        format!("{}: {:?} {first:?} {counts:?}", what(), judged.refusal)
+        format!("{}: {:?} {first:?} {counts:?}", what(), judged.rejection)
     })
 }
 

@@ -54,8 +54,8 @@ fn judge_row(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, 
 
 fn describe_reason(judgment: &Judgment) -> String {
     let mut parts = Vec::new();
-    if let Some(refusal) = judgment.refusal {
-        parts.push(format!("{refusal:?}"));
+    if let Some(rejection) = judgment.rejection {
+        parts.push(format!("{rejection:?}"));
     }
     if let Some(first) = judgment.findings.first_divergence {
         let kinds: Vec<String> = judgment

@@ -50,7 +50,7 @@ fn fair_answer(outcome: &Outcome) -> Answer {
     match &outcome.fair {
         _ if is_accepted(outcome) => Answer::Accepted,
         Some(fair)
-            if fair.refusal.is_none()
+            if fair.rejection.is_none()
                 && fair.findings.counts.get(FindingKind::TrimmedDecision) == fair.findings.counts.total() =>
         {
             Answer::Lost

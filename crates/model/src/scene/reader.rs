@@ -84,7 +84,7 @@ fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
     let difference = match original::read(text) {
         Ok(original) if original.scene == *scene => return,
         Ok(_) => "it joins lines without a space and may see other markup".to_owned(),
-        Err(refusal) => refusal.explanation,
+        Err(rejection) => rejection.explanation,
     };
     report.add_error(|| Problem::new(0..0, "the original reads this file differently").with_help(difference));
 }

@@ -66,11 +66,11 @@ pub(super) fn run<const N: usize>(
         let zero = if k[N - 1] == 0.0 { 0.0 } else { -polynomial[N] / k[N - 1] };
         let (mut factor_change, mut real_change) = (1.0, 1.0);
         if step > 0 && scalars.kind != ScalarKind::Divides {
-            let by_factor = factor.measure(estimate.1);
-            let by_zero = real.measure(zero);
-            (factor_change, real_change) = (by_factor.change, by_zero.change);
-            if by_factor.passes || by_zero.passes {
-                let attempt = Attempt { polynomial, k, estimate, zero, by_factor, by_zero };
+            let factor_measure = factor.measure(estimate.1);
+            let zero_measure = real.measure(zero);
+            (factor_change, real_change) = (factor_measure.change, zero_measure.change);
+            if factor_measure.passes || zero_measure.passes {
+                let attempt = Attempt { polynomial, k, estimate, zero, factor_measure, zero_measure };
                 let found = attempt.run::<N>(&mut factor, &mut real, steps);
                 if found.is_some() {
                     return found;
@@ -89,8 +89,8 @@ struct Attempt<'a> {
     k: Coefficients,
     estimate: (f64, f64),
     zero: f64,
-    by_factor: Measure,
-    by_zero: Measure,
+    factor_measure: Measure,
+    zero_measure: Measure,
 }
 
 /// The position in the chain of iterations.
@@ -113,8 +113,8 @@ impl Attempt<'_> {
         let mut k = self.k;
         let (mut u, mut v) = self.estimate;
         let (mut factor_tried, mut zero_tried) = (false, false);
-        let linear_first =
-            (self.by_zero.passes && !self.by_factor.passes) || self.by_zero.product < self.by_factor.product;
+        let linear_first = (self.zero_measure.passes && !self.factor_measure.passes)
+            || self.zero_measure.product < self.factor_measure.product;
         let mut stage = if linear_first { Stage::Linear } else { Stage::Quadratic };
         loop {
             stage = match stage {
@@ -125,7 +125,7 @@ impl Attempt<'_> {
                     }
                     factor_tried = true;
                     factor.tighten();
-                    if zero_tried || !self.by_zero.passes {
+                    if zero_tried || !self.zero_measure.passes {
                         Stage::Restore
                     } else {
                         k = self.k;
@@ -150,7 +150,7 @@ impl Attempt<'_> {
                 }
                 Stage::Restore => {
                     k = self.k;
-                    if self.by_factor.passes && !factor_tried {
+                    if self.factor_measure.passes && !factor_tried {
                         Stage::Quadratic
                     } else {
                         return None;

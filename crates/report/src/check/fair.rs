@@ -3,7 +3,7 @@ use super::super::{number::group_digits, step_share, style::TextStyle};
 use fosssim_findings::Cause;
 use fosssim_judge::{
     Outcome,
-    fair::{FairRefusal, FairVerdict, Judgment},
+    fair::{FairRejection, FairVerdict, Judgment},
 };
 
 /// Returns the text of the verdict and its style.
@@ -17,11 +17,11 @@ pub(super) const fn verdict(judgment: &Judgment) -> (TextStyle, &'static str) {
 
 /// Returns the reason for the fair verdict, in one line.
 pub(super) fn summarize(judgment: &Judgment, outcome: &Outcome) -> String {
-    let refusal = match judgment.refusal {
-        Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
-        Some(FairRefusal::Damaged) => Some("the trace is damaged"),
-        Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
-        Some(FairRefusal::Undecided) => {
+    let rejection = match judgment.rejection {
+        Some(FairRejection::Stopped) => Some("the trace can't be read to its end"),
+        Some(FairRejection::Damaged) => Some("the trace is damaged"),
+        Some(FairRejection::TrailingBytes) => Some("bytes follow the last record"),
+        Some(FairRejection::Undecided) => {
             Some("most of its decisions differ from the reference's, though only round-off could change them")
         }
         None => None,
@@ -41,7 +41,7 @@ pub(super) fn summarize(judgment: &Judgment, outcome: &Outcome) -> String {
     });
     let given_up = judgment.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
     let nothing = (judgment.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
-    let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
+    let parts = [rejection.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
         parts if parts.is_empty() => step_share::describe_right_steps(outcome.steps, group_digits),
         parts => parts.join("; "),

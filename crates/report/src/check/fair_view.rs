@@ -2,7 +2,7 @@
 use super::super::view::{FindingView, view};
 use fosssim_findings::{
     Book, Cause, Finding, FindingKind,
-    fair::{Borderline, FairRefusal, FairVerdict, Form, Judgment, Shares},
+    fair::{Borderline, FairRejection, FairVerdict, Form, Judgment, Shares},
 };
 use serde::Serialize;
 
@@ -14,7 +14,7 @@ view! {
         /// The verdict by the fair rules. It is `none` if judging stopped early before a fault was found.
         verdict: FairVerdict = fair.verdict,
         /// The reason why the whole trace is rejected; null if there is none.
-        refusal: Option<FairRefusal> = fair.refusal,
+        refusal: Option<FairRejection> = fair.rejection,
         /// The number of steps with at least one finding. The first record is not a step.
         wrong_steps: u64 = fair.findings.wrong_steps,
         /// The first finding; null if there is none.

@@ -18,7 +18,7 @@ pub(super) struct AttackRequirement {
     /// The layers that stop the attack. One of them is enough.
     layers: &'static [Layer],
     /// Whether the processor offers what the attack needs.
-    by_processor: bool,
+    is_met_by_processor: bool,
 }
 
 impl AttackRequirement {
@@ -31,16 +31,16 @@ impl AttackRequirement {
         Self::new("private processes", &[Layer::Namespaces]),
         Self::new("signal scope", &[Layer::Scopes, Layer::OwnUser]),
         Self::new("named violations", &[Layer::NamedCalls]),
-        Self { name: "x86_64", layers: &[], by_processor: cfg!(target_arch = "x86_64") },
+        Self { name: "x86_64", layers: &[], is_met_by_processor: cfg!(target_arch = "x86_64") },
     ];
 
     const fn new(name: &'static str, layers: &'static [Layer]) -> Self {
-        Self { name, layers, by_processor: false }
+        Self { name, layers, is_met_by_processor: false }
     }
 
     /// Returns whether a host with these layers offers what the attack needs.
     pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
-        self.by_processor || self.layers.iter().any(|wall| is_active(layers, *wall))
+        self.is_met_by_processor || self.layers.iter().any(|wall| is_active(layers, *wall))
     }
 }
 

@@ -43,7 +43,7 @@ fn probe() -> io::Result<Probe> {
     let roots_group = !root && sys::group_id() == 0;
     let mut probe = Probe { root, roots_group, landlock_abi: sys::landlock_version(), ..Probe::default() };
     probe.reaper = failure_reason(sys::become_reaper());
-    (probe.execution, probe.from_memory) = try_execution();
+    (probe.execution, probe.executes_from_memory) = try_execution();
     probe.namespaces = try_namespaces();
     match try_group() {
         Ok((controls, ends)) => {

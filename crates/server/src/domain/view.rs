@@ -198,7 +198,8 @@ pub struct History {
     /// The SHA-256 of the grader, if it is known.
     pub grader: String,
     /// The suite, the rules and the upload, in one line.
-    pub by_what: String,
+    #[serde(rename = "by_what")]
+    pub task_summary: String,
     /// The complete task (rules, suite, digests), with which the grading can be repeated. Only for staff.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub task: String,
@@ -528,7 +529,7 @@ pub(super) async fn history(
             new_code: new_code.unwrap_or_default(),
             new_points: staff_points.clone().or(new_points),
             new_max_points,
-            by_what: describe_task(&row.text("task")?, is_staff),
+            task_summary: describe_task(&row.text("task")?, is_staff),
             task: if is_staff { row.text("task")? } else { String::new() },
         }))
     };

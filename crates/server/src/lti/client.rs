@@ -118,7 +118,7 @@ type Tokens = HashMap<(i64, String), (String, Instant)>;
 /// The client for requests to platforms.
 pub struct Client {
     agent: Agent,
-    pub(super) over_http: bool,
+    pub(super) allows_http: bool,
     tokens: Mutex<Tokens>,
 }
 
@@ -136,8 +136,8 @@ struct Token {
 }
 
 impl Client {
-    pub(super) fn new(over_http: bool) -> Self {
-        Self { agent: net::new_agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
+    pub(super) fn new(allows_http: bool) -> Self {
+        Self { agent: net::new_agent(allows_http, ANSWER_TIMEOUT), allows_http, tokens: Mutex::default() }
     }
 
     /// Downloads a public file of a platform.
@@ -147,7 +147,7 @@ impl Client {
     }
 
     async fn send(&self, platform: &Platform, request: &ServiceRequest, token: Option<&str>) -> ServiceResult {
-        let Some(url) = platform.parse_registered_url(&request.url, self.over_http) else {
+        let Some(url) = platform.parse_registered_url(&request.url, self.allows_http) else {
             let host = Url::parse(&request.url).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "another host".to_owned());
             return Err(ServiceFault::Rejected(format!(

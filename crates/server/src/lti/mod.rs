@@ -43,14 +43,14 @@ impl Default for Lti {
 }
 
 impl Lti {
-    /// Creates the state. With `over_http`, platforms without TLS are allowed, for tests on one machine.
-    pub fn new(over_http: bool) -> Self {
-        Self { client: Client::new(over_http), platform_keys: PlatformKeys::default() }
+    /// Creates the state. With `allows_http`, platforms without TLS are allowed, for tests on one machine.
+    pub fn new(allows_http: bool) -> Self {
+        Self { client: Client::new(allows_http), platform_keys: PlatformKeys::default() }
     }
 
     /// Returns whether plain HTTP is allowed for platforms and for this service.
-    pub fn over_http(&self) -> bool {
-        self.client.over_http
+    pub fn allows_http(&self) -> bool {
+        self.client.allows_http
     }
 
     /// Reads a platform's message about a person who signs in, and makes all checks of SEC 5.1.3.

@@ -56,9 +56,9 @@ pub struct Platform {
 }
 
 /// Parses a URL that this service may call: HTTPS with a host, and no user name, password or fragment.
-pub(super) fn parse_service_url(text: &str, over_http: bool) -> Option<Url> {
+pub(super) fn parse_service_url(text: &str, allows_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
-    let is_secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
+    let is_secure = url.scheme() == "https" || (allows_http && url.scheme() == "http");
     let is_plain = url.username().is_empty() && url.password().is_none() && url.fragment().is_none();
     (is_secure && is_plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
@@ -77,7 +77,7 @@ impl PlatformSettings {
     /// # Errors
     ///
     /// Fails with a message about the first invalid value.
-    pub fn check(&self, over_http: bool) -> Result<(), Problem> {
+    pub fn check(&self, allows_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
             ensure(is_word(text), Problem::invalid(format!("{name} must be 1 to 255 characters long")))?;
@@ -86,7 +86,7 @@ impl PlatformSettings {
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
         {
             ensure(
-                parse_service_url(text, over_http).is_some(),
+                parse_service_url(text, allows_http).is_some(),
                 Problem::invalid(format!("{name} must be a URL that begins with https://")),
             )?;
         }
@@ -117,24 +117,25 @@ impl FromRow for Platform {
 
 impl Platform {
     /// Returns the hosts of the platform's services.
-    fn service_hosts(&self, over_http: bool) -> Vec<String> {
+    fn service_hosts(&self, allows_http: bool) -> Vec<String> {
         let settings = &self.settings;
         let hosts = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
-        let hosts = hosts.into_iter().filter_map(|text| parse_service_url(text, over_http)).map(|url| origin(&url));
+        let hosts = hosts.into_iter().filter_map(|text| parse_service_url(text, allows_http)).map(|url| origin(&url));
         hosts.chain(settings.hosts.iter().cloned()).collect()
     }
 
     /// Parses a URL of one of the platform's services. Only registered hosts are allowed, so that a message can't
     /// make this service call other hosts, or send its token to them.
-    pub(crate) fn parse_registered_url(&self, text: &str, over_http: bool) -> Option<Url> {
-        let url = parse_service_url(text, over_http)?;
-        self.service_hosts(over_http).contains(&origin(&url)).then_some(url)
+    pub(crate) fn parse_registered_url(&self, text: &str, allows_http: bool) -> Option<Url> {
+        let url = parse_service_url(text, allows_http)?;
+        self.service_hosts(allows_http).contains(&origin(&url)).then_some(url)
     }
 
     /// Returns the origins whose pages may show a page of this service in a frame.
-    pub fn origins(&self, over_http: bool) -> String {
-        let scheme = if over_http { "http://" } else { "https://" };
-        let mut all: Vec<String> = self.service_hosts(over_http).iter().map(|host| format!("{scheme}{host}")).collect();
+    pub fn origins(&self, allows_http: bool) -> String {
+        let scheme = if allows_http { "http://" } else { "https://" };
+        let mut all: Vec<String> =
+            self.service_hosts(allows_http).iter().map(|host| format!("{scheme}{host}")).collect();
         all.sort();
         all.dedup();
         all.join(" ")

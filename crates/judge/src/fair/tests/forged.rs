@@ -1,6 +1,6 @@
 //! Manipulated traces: each one tests something that the fair rules must not accept.
 use crate::{
-    fair::{FairRefusal, FairVerdict, Judgment, context::Context},
+    fair::{FairRejection, FairVerdict, Judgment, context::Context},
     finding::{FindingDetail, FindingKind},
     samples::{
         BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, judge_by_both, replace_polynomials, scene, simulate,
@@ -365,7 +365,7 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let plain = fair(&scene, &write_frames(&scene, &simulate(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
     let forged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Push))));
-    assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
+    assert_eq!(forged.rejection, Some(FairRejection::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
 

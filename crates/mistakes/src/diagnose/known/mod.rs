@@ -14,14 +14,14 @@ mod candidates;
 mod combinations;
 mod contradictions;
 mod example;
-mod refute;
 mod resimulate;
 mod trials;
+mod visibility;
 
 pub use applicable_rows::may_change_trace;
 pub(super) use combinations::is_empty_stage;
-pub use refute::mistake_is_visible;
-pub(super) use refute::{MistakeEffect, find_effect};
+pub use visibility::mistake_is_visible;
+pub(super) use visibility::{MistakeEffect, find_effect};
 
 use super::{
     Detail, Explanation,

@@ -101,7 +101,7 @@ impl Responses {
         let details =
             wrong.iter().map(|(changed, wrong)| describe_change(*changed, wrong, changes[changed].len())).collect();
         Some(new_observation(
-            StageFault::Responses { kind, wrong: what, in_rounds: self.has_rounds },
+            StageFault::Responses { kind, wrong: what, only_in_rounds: self.has_rounds },
             details,
             self.contacts,
         ))

@@ -7,10 +7,10 @@ use crate::{
         AlikeScenes, describe_difference, format_optional_points, format_points, group_by_cause, scene_lines,
         scene_sentence, text::MAX_SHOWN_LINES,
     },
+    line_width::count_columns,
     number::format_count,
     style::TextStyle,
     words,
-    wrap::count_columns,
 };
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
@@ -31,10 +31,10 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let shown = |scene: &SceneGrade| options.detail == TextDetail::All || !scene.verdict.is_accepted();
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&to_one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
-    let scenes = Scenes { options, width, by_cause: group_by_cause(grade) };
+    let scenes = Scenes { options, width, scenes_by_cause: group_by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     let mut text: String = groups.map(|group| scenes.render_group(group)).collect();
-    if scenes.by_cause.len() > MAX_DESCRIBED && options.detail < TextDetail::All {
+    if scenes.scenes_by_cause.len() > MAX_DESCRIBED && options.detail < TextDetail::All {
         text += "\nExamples of all causes: -v\n";
     }
     text
@@ -44,7 +44,7 @@ struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
     /// The width of the longest scene name, in columns.
     width: usize,
-    by_cause: Vec<AlikeScenes<'a>>,
+    scenes_by_cause: Vec<AlikeScenes<'a>>,
 }
 
 impl<'a> Scenes<'a, '_> {
@@ -92,12 +92,12 @@ impl<'a> Scenes<'a, '_> {
     /// Returns the scenes whose verdicts have the same cause as this scene's.
     fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
         let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|scene_grade| scene_grade.scene == scene.scene);
-        self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
+        self.scenes_by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
 
     /// Returns whether the scene's cause is one of those that are described with an example.
     fn is_described(&self, scene: &SceneGrade) -> bool {
-        let mut causes = self.by_cause.iter().take(MAX_DESCRIBED);
+        let mut causes = self.scenes_by_cause.iter().take(MAX_DESCRIBED);
         self.options.detail == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
     }
 

@@ -2,8 +2,8 @@
 use crate::untrusted_text::to_one_line;
 use crate::{
     grade::format_optional_points,
+    line_width::count_columns,
     style::{Style, TextStyle},
-    wrap::count_columns,
 };
 use fosssim_findings::{Grade, GroupGrade, changes::GradeChanges};
 

@@ -97,9 +97,9 @@ fn faults() -> Vec<StageFault> {
             WrongResponses::Amount(velocities.clone()),
             WrongResponses::Amount(all.clone()),
         ];
-        for in_rounds in [false, true] {
+        for only_in_rounds in [false, true] {
             let all = responses.clone().into_iter();
-            faults.extend(all.map(|wrong| StageFault::Responses { kind, wrong, in_rounds }));
+            faults.extend(all.map(|wrong| StageFault::Responses { kind, wrong, only_in_rounds }));
         }
     }
     faults.extend(changes().map(StageFault::Change));

@@ -100,9 +100,9 @@ pub(in crate::domain) enum SignInMethod {
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
     /// Whether the session was started with a link from a course's staff.
-    pub(in crate::domain) is_by_staff: bool,
+    pub(in crate::domain) started_by_staff: bool,
     /// Whether the session was started with a token.
-    pub(in crate::domain) is_by_token: bool,
+    pub(in crate::domain) started_by_token: bool,
     /// Whether the session is young enough to create further ways to sign in.
     pub(in crate::domain) is_recent: bool,
     /// Whether the stored time of the session's last use must be updated.
@@ -148,8 +148,8 @@ pub(in crate::domain) async fn find_session_account(
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
     let state = SessionState {
-        is_by_staff: row.flag("vouched")?,
-        is_by_token: row.maybe_int("token")?.is_some(),
+        started_by_staff: row.flag("vouched")?,
+        started_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT_AGE,
         is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,
     };

@@ -23,7 +23,7 @@ impl From<ProviderFault> for Problem {
     fn from(fault: ProviderFault) -> Self {
         match fault {
             ProviderFault::Unavailable(detail) => Self::unavailable(detail),
-            ProviderFault::Rejected(detail) => Self::refused_sign_in(detail),
+            ProviderFault::Rejected(detail) => Self::rejected_sign_in(detail),
         }
     }
 }
@@ -77,19 +77,19 @@ impl Visitor {
     pub async fn sign_in_by_provider(&self, state: &str, code: &str) -> Result<LaunchTarget, Problem> {
         let (app, browser) = (&self.app, self.secrets.provider_secret.as_ref());
         let provider = app.configured_provider()?;
-        let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
-        ensure(pending.service == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
+        let pending = app.pending_sign_in(state, browser, Problem::rejected_sign_in).await?;
+        ensure(pending.service == PROVIDER_SERVICE, Problem::rejected_sign_in(UNKNOWN_SIGN_IN))?;
         let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_secrets(state).await?).await?;
         let connects = match pending.account {
             0 => None,
             account => {
                 let connects = app.person(&self.secrets).await.ok().filter(|person| person.account.id == account);
-                let signed_out = || Problem::refused_sign_in("you are not signed in to the account to connect");
+                let signed_out = || Problem::rejected_sign_in("you are not signed in to the account to connect");
                 Some(connects.ok_or_else(signed_out)?)
             }
         };
         let mut transaction = app.0.database.begin().await?;
-        ensure(pending.mark_used(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
+        ensure(pending.mark_used(&mut transaction).await?, Problem::rejected_sign_in(UNKNOWN_SIGN_IN))?;
         let account = match connects {
             Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
             None => resolve(&mut transaction, provider, &person).await?,
@@ -112,7 +112,7 @@ async fn connect(
     person: &ProviderPerson,
     connecting: &Person,
 ) -> Result<i64, Problem> {
-    let (account, is_by_staff) = (connecting.account.id, connecting.require_recent_browser()?.is_by_staff);
+    let (account, started_by_staff) = (connecting.account.id, connecting.require_recent_browser()?.started_by_staff);
     let issuer = stored_issuer(provider);
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
     ensure(
@@ -125,7 +125,7 @@ async fn connect(
     let newcomer = describe_newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
-    newcomer.link_account(transaction, account, is_by_staff).await?;
+    newcomer.link_account(transaction, account, started_by_staff).await?;
     log(transaction, provider, account, &connecting.account.login).await?;
     Ok(account)
 }
@@ -149,7 +149,7 @@ async fn resolve(transaction: &mut Transaction, provider: &Provider, person: &Pr
             let account = row.int("id")?;
             if identity::is_trusted(transaction, account).await? {
                 let detail = format!("{mailbox} is staff here: sign in with your link, and connect your account there");
-                return Err(Problem::refused_sign_in(detail));
+                return Err(Problem::rejected_sign_in(detail));
             }
             // Staff could have signed in as this account.
             identity::end_all_access(transaction, account).await?;
@@ -159,7 +159,7 @@ async fn resolve(transaction: &mut Transaction, provider: &Provider, person: &Pr
     }
     let account = newcomer.find_or_make(transaction).await?;
     let row = transaction.one("SELECT disabled_at FROM account WHERE id = ?", values![account]).await?;
-    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_sign_in("your account here is closed"))?;
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::rejected_sign_in("your account here is closed"))?;
     Ok(account)
 }
 

@@ -162,13 +162,13 @@ impl Person {
             return Ok(LinkStep::Assignment(format!("/c/{}/a/{}#done", known_course.slug, assignment.slug)));
         };
         transaction.commit().await?;
-        let over_http = self.app.lti.over_http();
-        let Some(address) = pending.platform.parse_registered_url(&wanted.deep_link_return_url, over_http) else {
-            return Err(Problem::refused_launch("the platform's return URL is on a host that is not configured"));
+        let allows_http = self.app.lti.allows_http();
+        let Some(address) = pending.platform.parse_registered_url(&wanted.deep_link_return_url, allows_http) else {
+            return Err(Problem::rejected_launch("the platform's return URL is on a host that is not configured"));
         };
         let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
         let token = lti::deep_linking_response(&self.app.0.database, &pending.platform, arrival, &launch, item).await?;
-        let origins = pending.platform.origins(over_http);
+        let origins = pending.platform.origins(allows_http);
         Ok(LinkStep::Answer { address: address.into(), origins, token })
     }
 }

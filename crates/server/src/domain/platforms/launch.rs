@@ -61,9 +61,9 @@ impl From<Rejection> for Problem {
     fn from(refused: Rejection) -> Self {
         match &refused {
             Rejection::Deployment(_) => {
-                Self::refused_until(refused.to_string(), "ask the server's administrator to add this deployment")
+                Self::rejected_until(refused.to_string(), "ask the server's administrator to add this deployment")
             }
-            _ => Self::refused_launch(refused.to_string()),
+            _ => Self::rejected_launch(refused.to_string()),
         }
     }
 }
@@ -72,7 +72,7 @@ impl App {
     /// Checks that this service can be launched from platforms: browsers must send its cookies with requests from
     /// another site.
     fn check_launchable(&self) -> Result<(), Problem> {
-        if self.is_secure() || self.lti.over_http() {
+        if self.is_secure() || self.lti.allows_http() {
             return Ok(());
         }
         let remedy = "start the server with --public-url https://...";
@@ -100,8 +100,8 @@ impl Visitor {
         let rows = transaction.rows(statement, values![&request.iss, client, client]).await?;
         match rows.as_slice() {
             [row] => Ok(Platform::from_row(row)?),
-            [] => Err(Problem::refused_launch("no administrator has registered this platform")),
-            _ => Err(Problem::refused_launch("the platform has several registrations, and sent no client ID")),
+            [] => Err(Problem::rejected_launch("no administrator has registered this platform")),
+            _ => Err(Problem::rejected_launch("the platform has several registrations, and sent no client ID")),
         }
     }
 
@@ -141,19 +141,19 @@ impl Visitor {
     /// Fails if the answer does not belong to such a sign-in or platform, or the person may not sign in this way.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let pending =
-            self.app.pending_sign_in(state, self.secrets.platform_secret.as_ref(), Problem::refused_launch).await?;
+            self.app.pending_sign_in(state, self.secrets.platform_secret.as_ref(), Problem::rejected_launch).await?;
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
         let number: i64 = pending.service.parse().unwrap_or_default();
         let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;
-        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN_SIGN_IN))?;
+        let platform: Platform = platform.ok_or_else(|| Problem::rejected_launch(UNKNOWN_SIGN_IN))?;
         let nonce = identity::digest(&self.app.compute_secret("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
             let detail = "the platform says that you neither learn nor teach in this course";
-            return Err(Problem::refused_until(detail, "ask the course's teacher there to make you a student"));
+            return Err(Problem::rejected_until(detail, "ask the course's teacher there to make you a student"));
         };
         let mut transaction = self.app.0.database.begin().await?;
-        ensure(pending.mark_used(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
+        ensure(pending.mark_used(&mut transaction).await?, Problem::rejected_launch(UNKNOWN_SIGN_IN))?;
         let launched = accept_launch(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
@@ -195,7 +195,7 @@ async fn accept_launch(
         let detail = "this course is not connected with the grading server yet";
         ensure(
             staff,
-            Problem::refused_until(detail, "ask your teacher to open this link once, and then open it again"),
+            Problem::rejected_until(detail, "ask your teacher to open this link once, and then open it again"),
         )?;
         let account = resolve(transaction, platform, &message.person).await?;
         return choose(transaction, platform, arrival, account).await;
@@ -207,7 +207,7 @@ async fn accept_launch(
     }
     enroll(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
-        ensure(staff, Problem::refused_launch("only teachers of the course can create links"))?;
+        ensure(staff, Problem::rejected_launch("only teachers of the course can create links"))?;
         return choose(transaction, platform, arrival, account).await;
     };
     let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
@@ -228,7 +228,7 @@ async fn accept_launch(
             Ok(LaunchTarget { session, path: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
-        None => Err(Problem::refused_until(
+        None => Err(Problem::rejected_until(
             "no assignment was chosen for this link yet",
             "ask your teacher to open this link once, then open it again",
         )),
@@ -301,11 +301,11 @@ async fn choose(
 async fn resolve(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
-    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::rejected_launch("your account here is closed"))?;
     // Without this check, the owner of any registered platform could act as an administrator here.
     ensure(
         !row.flag("is_admin")?,
-        Problem::refused_launch("you are an administrator of this server: sign in on its own pages"),
+        Problem::rejected_launch("you are an administrator of this server: sign in on its own pages"),
     )?;
     Ok(account)
 }

@@ -89,7 +89,7 @@ impl Admin {
     /// Fails if a setting is invalid.
     pub async fn set_platform(&self, name: &str, settings: &PlatformSettings) -> Result<Platform, Problem> {
         identity::check_slug("a platform's name", name)?;
-        settings.check(self.app.lti.over_http())?;
+        settings.check(self.app.lti.allows_http())?;
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
         let registered = transaction.row(statement, values![&settings.issuer, &settings.client_id, name]).await?;

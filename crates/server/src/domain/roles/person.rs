@@ -33,14 +33,14 @@ pub struct Person {
 
 impl Person {
     /// Returns whether the person signed in with a token, directly or at the beginning of the session.
-    pub fn is_by_token(&self) -> bool {
-        self.session.as_ref().is_none_or(|session| session.is_by_token)
+    pub fn uses_token(&self) -> bool {
+        self.session.as_ref().is_none_or(|session| session.started_by_token)
     }
 
     /// Returns the session if the person uses a browser. Requests with a token get an error, because a token must not
     /// create rights that outlive it.
     pub(in crate::domain) fn require_browser(&self) -> Result<&SessionState, Problem> {
-        let session = self.session.as_ref().filter(|_| !self.is_by_token());
+        let session = self.session.as_ref().filter(|_| !self.uses_token());
         session.ok_or_else(|| Problem::sign_in_again("tokens, and sessions that began with a token, cannot do this"))
     }
 
@@ -86,7 +86,8 @@ impl Person {
     /// Fails if its name is invalid or taken, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
-        let way = if self.require_recent_browser()?.is_by_staff { SignInMethod::ByStaff } else { SignInMethod::Own };
+        let way =
+            if self.require_recent_browser()?.started_by_staff { SignInMethod::ByStaff } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n, count(CASE WHEN name = ? THEN 1 END) AS with_name FROM token
             WHERE account = ? AND revoked_at IS NULL";

@@ -133,7 +133,7 @@ pub(super) async fn begin_login(
         // to the platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = render(&WindowPage { frame: PageFrame::default(), address })?.into_response();
-        let origins = platform.origins(app.lti.over_http());
+        let origins = platform.origins(app.lti.allows_http());
         let policy = format!(
             "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; \
              base-uri 'none'; frame-ancestors {origins}"
@@ -145,7 +145,7 @@ pub(super) async fn begin_login(
 }
 
 pub(super) async fn accept(visitor: Visitor, Fields(answer): Fields<sign_in::Answer>) -> Result<Response, Problem> {
-    let (state, token) = answer.read("platform", Problem::refused_launch)?;
+    let (state, token) = answer.read("platform", Problem::rejected_launch)?;
     let launched = visitor.launch(&state, &token).await?;
     Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.path))
 }

@@ -42,7 +42,7 @@ pub(super) async fn begin_connection(visitor: Visitor, person: Person) -> Result
 }
 
 pub(super) async fn accept(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
-    let (state, code) = answer.read("provider", Problem::refused_sign_in)?;
+    let (state, code) = answer.read("provider", Problem::rejected_sign_in)?;
     let signed_in = visitor.sign_in_by_provider(&state, &code).await?;
     Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.path)))
 }
