@@ -129,7 +129,7 @@ fn resolve(
             });
             for (name, xml) in found {
                 if let Some(other) = seen_scenes.insert(name.clone(), group.name.clone()) {
-                    problems.push((at, format!("scene {name} is in group \"{other}\" already")));
+                    problems.push((at, format!("scene {name} is already in group \"{other}\"")));
                     continue;
                 }
                 match scene::read(&name, &xml) {
@@ -231,7 +231,7 @@ mod tests {
         assert!(error.contains("5:11: no embedded scene matches asset:NoSuchTests/*"), "{error}");
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
         assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
-        assert!(error.contains("is in group \"b\" already"), "{error}");
+        assert!(error.contains("is already in group \"b\""), "{error}");
         // The search for scenes runs even if another part is wrong.
         let both = text.replacen("name = \"x\"", "name = \"x\"\nhint = \"what\"", 1);
         let error = load_suite(&both, Path::new("nowhere")).expect_err("wrong").to_string();

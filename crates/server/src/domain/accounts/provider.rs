@@ -117,7 +117,7 @@ async fn connect(
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
     ensure(
         transaction.row(statement, values![account, &issuer]).await?.is_none(),
-        Problem::conflict("your account is connected already", "disconnect it first, on the page Account"),
+        Problem::conflict("your account is already connected", "disconnect it first, on the page Account"),
     )?;
     identity::end_sessions(transaction, account).await?;
     identity::end_staff_access(transaction, account).await?;

@@ -30,7 +30,7 @@ impl App {
         if counts.int("examples")? == 0 {
             ensure(
                 counts.int("courses")? <= 0,
-                Problem::conflict("this server has courses already", "start it without --example"),
+                Problem::conflict("this server already has courses", "start it without --example"),
             )?;
             let settings = Settings::default().validate(&self.suites)?;
             let course = admin::make_course(&mut transaction, COURSE).await?;

@@ -41,7 +41,9 @@ impl Person {
     /// create rights that outlive it.
     pub(in crate::domain) fn require_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.uses_token());
-        session.ok_or_else(|| Problem::sign_in_again("tokens, and sessions that began with a token, cannot do this"))
+        session.ok_or_else(|| {
+            Problem::sign_in_again("this is not possible with a token, or in a session started with one")
+        })
     }
 
     /// Returns the session if the person signed in recently, so that somebody who finds an open browser cannot create
@@ -92,7 +94,8 @@ impl Person {
         let statement = "SELECT count(*) AS n, count(CASE WHEN name = ? THEN 1 END) AS with_name FROM token
             WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![name, self.account.id]).await?;
-        let taken = Problem::conflict("you have a token with this name", "choose another name, or revoke that token");
+        let taken =
+            Problem::conflict("you already have a token with this name", "choose another name, or revoke that token");
         ensure(count.int("with_name")? == 0, taken)?;
         ensure(count.int("n")? < 50, Problem::conflict("an account has at most 50 tokens", "revoke unused ones"))?;
         let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;

@@ -94,7 +94,7 @@ impl Staff {
         seen_mark: Option<Option<i64>>,
     ) -> Result<Submission, Problem> {
         check_text("a comment", comment, 0)?;
-        let bare = Problem::conflict("different points need a reason", "write it in the comment");
+        let bare = Problem::conflict("different points need a reason", "write the reason in the comment");
         ensure(points.is_none() || !comment.is_empty(), bare)?;
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;

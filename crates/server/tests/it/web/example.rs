@@ -48,7 +48,7 @@ async fn a_real_server_is_no_example(fresh: Fresh) {
     server.course(&admin, "physics");
     server.stop();
     let error = server.start_again_with(&["--example"]).expect_err("refused");
-    assert!(error.contains("this server has courses already"), "{error}");
+    assert!(error.contains("this server already has courses"), "{error}");
     server.resume();
     assert_eq!(admin.get("/api/v1/courses").expect(200).json().as_array().expect("a list").len(), 1);
 }

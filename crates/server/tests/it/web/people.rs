@@ -144,7 +144,7 @@ async fn tokens_make_no_further_ways_in(fresh: Fresh) {
     let made = session.post_json("/api/v1/tokens", r#"{"name": "leaked"}"#).expect(201).json();
     // Two tokens of a person differ in their names.
     let problem = session.post_json("/api/v1/tokens", r#"{"name": "leaked"}"#).expect(409).json();
-    assert!(problem["detail"] == "you have a token with this name", "{problem}");
+    assert!(problem["detail"] == "you already have a token with this name", "{problem}");
     let bearer = made["token"].as_str().expect("a token");
     let token = server.with_token(bearer);
     let cookie = server.visitor().post_form("/sign-in", &format!("token={bearer}")).expect(303);
