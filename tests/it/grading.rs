@@ -106,7 +106,8 @@ fn a_right_and_a_wrong_program_get_their_reports() {
     };
     let parts =
         ["programs", "the sandbox's processes", "starting runs", "judging", "reports and the rest"].map(seconds);
-    assert!(parts[0] > 0.0 && parts[3] > 0.0 && parts.iter().sum::<f64>() <= seconds("together") + 0.01, "{parts:?}");
+    // A part may be 0 s, because it is rounded to milliseconds.
+    assert!(parts.iter().sum::<f64>() <= seconds("together") + 0.01, "{parts:?}: {}", run.shown());
     let run = workspace.run([
         "grade",
         "submissions/fosssim-sample.pe-square-no-eh",

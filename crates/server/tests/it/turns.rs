@@ -29,8 +29,14 @@ async fn workers_go_before_requests(fresh: Fresh) {
     let task = |who: &'static str, database: fosssim_server::db::Database| {
         let (order, asks) = (order.clone(), asks.clone());
         tokio::spawn(async move {
-            asks.fetch_add(1, Ordering::SeqCst);
-            let transaction = database.begin().await.expect("a transaction");
+            // A task counts when its request has its place among those that wait.
+            let (mut begin, mut once) = (std::pin::pin!(database.begin()), true);
+            let begin = std::future::poll_fn(|context| {
+                let progress = begin.as_mut().poll(context);
+                asks.fetch_add(usize::from(std::mem::take(&mut once)), Ordering::SeqCst);
+                progress
+            });
+            let transaction = begin.await.expect("a transaction");
             order.lock().expect("no panic").push(who);
             transaction.commit().await.expect("commit");
         })
