@@ -14,7 +14,9 @@ pub(super) async fn show_page(State(app): State<App>) -> Result<Response, Proble
         remedy: "ask the server's administrator".to_owned(),
         ..Problem::not_found("")
     };
-    let page = app.checker.clone().ok_or_else(missing)?;
+    // The page is also used without a server, so only this copy has a link to one.
+    let page = app.checker.as_ref().ok_or_else(missing)?;
+    let page = page.replacen("<strong class=\"brand\">fosssim-oracle</strong>", "<a href=\"/\">Courses</a>", 1);
     let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();
     if let Some(policy) = policy {

@@ -25,7 +25,8 @@ if [ "$1 $2" = "suite list" ]; then
     exit 0
 fi
 if [ "$1" = page ]; then
-    printf '<meta http-equiv="Content-Security-Policy" content="default-src %s">the checker' "'none'"
+    printf '<meta http-equiv="Content-Security-Policy" content="default-src %s">' "'none'"
+    printf '<strong class="brand">fosssim-oracle</strong>the checker'
     exit 0
 fi
 if [ "$1 $2" = "suite check" ]; then
