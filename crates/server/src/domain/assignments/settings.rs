@@ -301,6 +301,11 @@ impl Settings {
         }
     }
 
+    /// Returns whether `other` has the same suite.
+    pub(crate) fn has_suite_of(&self, other: &Self) -> bool {
+        (&self.suite, &self.suite_archive) == (&other.suite, &other.suite_archive)
+    }
+
     fn suite(&self) -> Suite {
         match self.suite_archive.as_ref().and_then(|digest| digest.parse().ok()) {
             Some(digest) => Suite::Archive(digest),

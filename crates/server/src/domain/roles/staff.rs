@@ -128,10 +128,9 @@ impl Staff {
                settings = excluded.settings, revision = assignment.revision + 1,
                published_at = CASE WHEN ? = 0 THEN assignment.published_at END
             RETURNING id, slug, title, visible, settings, published_at, revision";
-        let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
         // A suite whose groups are unknown may also hide some.
         let hides_groups = change.suite.is_none_or(|suite| suite.hides_groups);
-        let withholds_groups = was_published && hides_groups && !is_same_suite;
+        let withholds_groups = was_published && hides_groups && !before.has_suite_of(&settings);
         let values = values![self.course, slug, title, visible, settings.to_json(), withholds_groups];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
         // A new rule for late work can change the points of late submissions, and platforms receive the shown points.

@@ -3,6 +3,7 @@
 use crate::domain::{Settings, Staff, submissions::regrade_steps, view::Assignment};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
+    lti::score,
     problem::{Problem, ensure},
     task::{JUDGE_ERROR, Task},
     values,
@@ -195,7 +196,7 @@ impl Staff {
     }
 
     /// Makes the results of a regrade count, and copies its grading settings to the assignment. If the grader failed on
-    /// a submission, its old grade stays.
+    /// a submission, its old grade stays. If the suite changes, published groups are withheld again.
     ///
     /// # Errors
     ///
@@ -220,14 +221,23 @@ impl Staff {
         let waiting = transaction.one(statement, values![id]).await?.int("n")?;
         ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
         // Later submissions are graded by these settings.
-        let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
-        let before = transaction.one(before, values![regraded.id]).await?.text("settings")?;
-        let before = Settings::from_json(&before)?;
-        let changes = before.grading_changes(&settings).join("; ");
-        let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
-        transaction.execute(statement, values![before.with_grading_of(&settings).to_json(), regraded.id]).await?;
+        let before = "SELECT settings, published_at FROM assignment WHERE id = ? {for update}";
+        let row = transaction.one(before, values![regraded.id]).await?;
+        let before = Settings::from_json(&row.text("settings")?)?;
+        let mut changes = before.grading_changes(&settings);
+        // The groups that the new suite hides are not those that were published.
+        let withholds_groups = row.maybe_int("published_at")?.is_some() && !before.has_suite_of(&settings);
+        let statement = "UPDATE assignment SET settings = ?, revision = revision + 1,
+            published_at = CASE WHEN ? = 0 THEN published_at END WHERE id = ?";
+        let new = before.with_grading_of(&settings).to_json();
+        transaction.execute(statement, values![new, withholds_groups, regraded.id]).await?;
         regrade_steps::apply(&mut transaction, id, (self.account.id, self.course, regraded.id), &reason).await?;
-        self.decide(transaction, regraded.id, id, "applied", &changes).await?;
+        if withholds_groups {
+            changes.push("withheld hidden groups".to_owned());
+            // The grades on which the grader failed are also shown without the old suite's hidden groups.
+            score::send_all(&mut transaction, regraded.id, false).await?;
+        }
+        self.decide(transaction, regraded.id, id, "applied", &changes.join("; ")).await?;
         self.show_regrade(slug, id, None).await
     }
 
