@@ -153,6 +153,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: ScoreOrder) ->
     })))
 }
 
+/// The state of a score that the grader has not determined yet (LTI Assignment and Grade Services 2.0).
+pub(crate) const PENDING: &str = "Pending";
+
 /// Returns the score of a person's work on an assignment: the points of the best submission. Before there are points,
 /// the platform receives the state `Pending`, or `PendingManual` if the grader failed; it never receives an undeserved
 /// zero. Groups that are hidden and not published are left out, because platforms show every score.
@@ -197,7 +200,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
             "activityProgress": "Completed", "gradingProgress": "FullyGraded",
         })),
         None => {
-            let grading = if is_waiting { "Pending" } else { "PendingManual" };
+            let grading = if is_waiting { PENDING } else { "PendingManual" };
             Some(json!({"activityProgress": "Submitted", "gradingProgress": grading}))
         }
     })

@@ -3,6 +3,7 @@ pub(super) use crate::visible_grade::verdict;
 use crate::{
     calendar,
     domain::{RegradeState, Submission},
+    lti::score::PENDING,
     problem,
     task::format_points,
 };
@@ -60,7 +61,7 @@ pub(super) fn describe_regrade(state: &RegradeState) -> &'static str {
 pub(super) fn describe_score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(max_points)) => format!("{} / {}", format_points(points), format_points(max_points)),
-        _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
+        _ if score["gradingProgress"] == PENDING => "being graded".to_owned(),
         _ => "staff must check it".to_owned(),
     }
 }
@@ -126,5 +127,12 @@ mod tests {
         assert_eq!(points("68.08974358974359", "100.0"), "68.09 of 100");
         assert_eq!(points("0", "7.5"), "0 of 7.5");
         assert_eq!(super::points(&None, &None), "\u{2013}");
+    }
+
+    #[test]
+    fn scores_without_points_say_who_must_act() {
+        let states = ["Pending", "PendingManual"];
+        let texts = states.map(|state| super::describe_score(&serde_json::json!({"gradingProgress": state})));
+        assert_eq!(texts, ["being graded", "staff must check it"]);
     }
 }
