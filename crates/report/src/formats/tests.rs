@@ -277,6 +277,9 @@ fn a_stopped_grading_has_points_in_no_format() {
     for format in [Format::Text, Format::Markdown] {
         let text = format.render(&grades);
         assert!(text.contains("no points yet: 2 of 3 scenes not run"), "{text}");
+        // The text names the scene that was running, and counts those that were not started.
+        let lines = ["  --  Detection/b", "  --  1 scene, grading was stopped\n"];
+        assert!(lines.iter().all(|line| text.contains(line) == (format == Format::Text)), "{text}");
     }
 }
 

@@ -1,5 +1,5 @@
 //! Describes how a submission changed since an earlier grading.
-use super::{format_optional_points, format_points, phrases::list_first};
+use super::{format_points, phrases::list_first};
 use crate::{number::format_count, style::TextStyle};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::GradeChanges};
 
@@ -33,13 +33,12 @@ pub(crate) fn change_lines(grade: &Grade) -> Vec<(TextStyle, String)> {
     if lines.is_empty() {
         lines.push((TextStyle::Faint, "no scene changed".to_owned()));
     }
-    let then = match format_points(changes.compared_points) == format_points(grade.max_points) {
-        true => format_optional_points(changes.earlier_points),
-        false => {
-            format!("{} of {}", format_optional_points(changes.earlier_points), format_points(changes.compared_points))
-        }
-    };
-    lines.insert(0, (TextStyle::Strong, format!("{then} points before, {} now", format_optional_points(grade.points))));
+    // A grading that did not run all scenes gives no points.
+    if let (Some(then), Some(now)) = (changes.earlier_points, grade.points) {
+        let (then, now, compared) = (format_points(then), format_points(now), format_points(changes.compared_points));
+        let of = if compared == format_points(grade.max_points) { String::new() } else { format!(" of {compared}") };
+        lines.insert(0, (TextStyle::Strong, format!("{then}{of} points before, {now} now")));
+    }
     lines
 }
 
@@ -62,5 +61,7 @@ mod tests {
             ["10 points before, 15 now", "1 scene became right: Impulses/a", "1 scene broke: Detection/a (WA)"];
         assert_eq!(words(&now), expected);
         assert_eq!(words(&immediate_grade(&now)), ["10 points before, 5 now", expected[2]]);
+        now.points = None;
+        assert_eq!(words(&now), expected[1..]);
     }
 }

@@ -106,8 +106,9 @@ fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
 }
 
 /// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is
-/// wrong only because of this mistake.
+/// wrong only because of this mistake, or the grade has no points.
 pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
+    grade.points?;
     let lost = together::mistake_points(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
 }

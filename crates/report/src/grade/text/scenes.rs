@@ -32,12 +32,19 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&to_one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
     let scenes = Scenes { options, width, scenes_by_cause: group_by_cause(grade) };
-    let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
+    // The closing lines count the scenes that were not run.
+    let has_news = |scene: &SceneGrade| shown(scene) && (options.detail == TextDetail::All || !was_skipped(scene));
+    let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(has_news));
     let mut text: String = groups.map(|group| scenes.render_group(group)).collect();
     if scenes.scenes_by_cause.len() > MAX_DESCRIBED && options.detail < TextDetail::All {
         text += "\nExamples of all causes: -v\n";
     }
     text
+}
+
+/// Returns whether the program was not started on a scene, so that only the reason can be reported.
+fn was_skipped(scene: &SceneGrade) -> bool {
+    scene.verdict == Verdict::NotRun && scene.measured.wall.is_zero()
 }
 
 struct Scenes<'a, 'b> {
@@ -63,7 +70,10 @@ impl<'a> Scenes<'a, '_> {
         let mut folded: BTreeMap<(Verdict, String), u64> = BTreeMap::new();
         for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
             let example = self.alike_scenes(scene).first().filter(|_| !scene.verdict.is_accepted());
-            let like = example.map_or_else(String::new, |example| format!(" like {}", to_one_line(&example.scene)));
+            let like = match example {
+                _ if was_skipped(scene) => format!(", {}", to_one_line(&words::summarize(scene))),
+                example => example.map_or_else(String::new, |example| format!(" like {}", to_one_line(&example.scene))),
+            };
             *folded.entry((scene.verdict, like)).or_default() += 1;
         }
         let row = |((verdict, like), count): ((Verdict, String), u64)| {
@@ -81,11 +91,12 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted. It is either accepted, or has the same cause as another scene that is
-    /// described.
+    /// Returns whether a scene is only counted. It is either accepted, was not run, or has the same cause as another
+    /// scene that is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.detail < TextDetail::All
             && (scene.verdict.is_accepted()
+                || was_skipped(scene)
                 || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
