@@ -140,7 +140,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("button", { name: "Create the assignment" }).click();
   await page.getByLabel("Suite file").setInputFiles(join(folder, "suite.tar.gz"));
   await page.getByRole("button", { name: "Upload the suite" }).click();
-  assert.match(await page.getByLabel("Suite").locator("option:checked").innerText(), /^One \(yours of .* UTC\)$/);
+  assert.match(await page.getByLabel("Suite").locator("option:checked").innerText(), /^One \(uploaded .* UTC\)$/);
   await page.getByLabel("Visible").check();
   await checkAccessibility(page);
   await page.getByRole("button", { name: "Save" }).click();

@@ -94,16 +94,6 @@ pub enum Suite {
     Archive(Digest),
 }
 
-impl Suite {
-    /// Returns the suite's name, or the beginning of the archive's digest, for messages.
-    pub fn short(&self) -> String {
-        match self {
-            Self::Named(name) => name.clone(),
-            Self::Archive(digest) => digest.short().to_owned(),
-        }
-    }
-}
-
 /// The codes of verdicts without a run, because the submission was unusable or could not be built.
 pub const NEVER_RAN: [&str; 2] = ["US", "CE"];
 

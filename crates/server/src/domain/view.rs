@@ -1,5 +1,8 @@
 //! The values that the service shows in the API, on pages and in exports.
-use super::{App, Settings};
+use super::{
+    App, Settings,
+    assignments::suites::{UploadedSuite, describe_suite},
+};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
@@ -59,7 +62,7 @@ pub struct Assignment {
 }
 
 /// A submission, and its result if there is one.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
     /// The submission's ID.
     pub id: i64,
@@ -197,7 +200,7 @@ pub struct History {
     pub version: String,
     /// The SHA-256 of the grader, if it is known.
     pub grader: String,
-    /// The suite, the rules and the upload, in one line.
+    /// The suite and the rules, in one line.
     #[serde(rename = "by_what")]
     pub task_summary: String,
     /// The complete task (rules, suite, digests), with which the grading can be repeated. Only for staff.
@@ -366,9 +369,7 @@ macro_rules! submissions {
 fn read_grade(row: &Row, result: i64) -> Result<ResultView, DbError> {
     let outcome = read_row!(row => Outcome {
         verdict, code, points, max_points, summary, version, grader, seconds, shown;
-        files: Vec::new(),
-        failed: None,
-        parts: None,
+        ..Outcome::default()
     });
     Ok(ResultView { result, outcome, created_at: row.int("graded_at")? })
 }
@@ -379,15 +380,12 @@ impl FromRow for Submission {
             id, number, assignment, title, login, name, form, file_name, digest, size, created_at, removed_at, job,
             account, fault = "last_fault";
             state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
-            ahead: None,
-            expected_seconds: None,
-            lacks_worker: false,
             progress: read_progress(row)?,
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
-            is_withheld: false,
             is_published: row.maybe_int("published_at")?.is_some(),
             late: Lateness::from_row(row)?,
             mark: row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?,
+            ..Self::default()
         });
         submission.apply_staff_points();
         Ok(submission)
@@ -483,13 +481,13 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// Returns the history of a grade. With `withheld`, hidden groups are left out. Only staff see the names of suites that
-/// were uploaded to the course.
+/// Returns the history of a grade. With `withheld`, hidden groups are left out. Only staff see the names of the suites
+/// that were uploaded to the course; students pass `None`.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
     withheld: bool,
-    is_staff: bool,
+    uploaded: Option<&[UploadedSuite]>,
 ) -> Result<Vec<History>, DbError> {
     let statement = "SELECT grade_change.changed_at, grade_change.reason, account.login, old.code AS old_code,
            old.points AS old_points, old.max_points AS old_max_points, old.shown AS old_shown,
@@ -529,22 +527,21 @@ pub(super) async fn history(
             new_code: new_code.unwrap_or_default(),
             new_points: staff_points.clone().or(new_points),
             new_max_points,
-            task_summary: describe_task(&row.text("task")?, is_staff),
-            task: if is_staff { row.text("task")? } else { String::new() },
+            task_summary: describe_task(&row.text("task")?, uploaded),
+            task: if uploaded.is_some() { row.text("task")? } else { String::new() },
         }))
     };
     rows.iter().map(read).collect()
 }
 
-/// Describes the suite, the hints and the rules of a task, in one line.
-fn describe_task(task: &str, is_staff: bool) -> String {
+/// Describes the suite and the rules of a task, in one line.
+fn describe_task(task: &str, uploaded: Option<&[UploadedSuite]>) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
-    let suite = match task.suite {
-        Suite::Archive(_) if !is_staff => "of the course".to_owned(),
-        suite => suite.short(),
+    let suite = match (&task.suite, uploaded) {
+        (Suite::Archive(_), None) => "of the course".to_owned(),
+        (suite, uploaded) => describe_suite(suite, uploaded.unwrap_or_default()),
     };
-    let rules = task.rules.as_deref().unwrap_or("of the suite");
-    format!("suite {suite}, rules {rules}, upload {}", task.submission.artifact.digest.short())
+    format!("suite {suite}, rules {}", task.rules.as_deref().unwrap_or("of the suite"))
 }
 
 impl FromRow for Assignment {

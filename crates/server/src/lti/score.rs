@@ -53,13 +53,6 @@ pub(crate) async fn queue_changed_scores(transaction: &mut Transaction, submissi
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Enqueues the scores of all submissions in a regrade, because the regrade's results count from now on.
-pub(crate) async fn queue_regraded_scores(transaction: &mut Transaction, regrade_id: i64) -> Result<(), DbError> {
-    let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
-    let rows = transaction.rows(statement, values![regrade_id]).await?;
-    enqueue(transaction, &rows, false).await.map(drop)
-}
-
 /// Enqueues all scores of an assignment, and returns their number. With `again`, scores that platforms already have are
 /// sent as well.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {

@@ -306,7 +306,7 @@ impl Settings {
         (&self.suite, &self.suite_archive) == (&other.suite, &other.suite_archive)
     }
 
-    fn suite(&self) -> Suite {
+    pub(in crate::domain) fn suite(&self) -> Suite {
         match self.suite_archive.as_ref().and_then(|digest| digest.parse().ok()) {
             Some(digest) => Suite::Archive(digest),
             None => Suite::Named(self.suite.clone()),

@@ -1,6 +1,12 @@
-//! The suites of the grader, by name. The grader lists them itself (`suite list --format json`), so that this program
-//! is independent of them.
-use crate::problem::Problem;
+//! The suites of the grader, by name, and those that were uploaded to a course. The grader lists its suites itself
+//! (`suite list --format json`), so that this program is independent of them.
+use crate::{
+    calendar,
+    db::{DbError, Transaction, from_row},
+    problem::Problem,
+    task::Suite,
+    values,
+};
 use serde::Deserialize;
 
 /// The grader's suites, the newest version of each first. A server without a grader, whose workers are elsewhere,
@@ -34,6 +40,49 @@ pub struct SuiteGroup {
     pub(crate) name: String,
     pub(crate) scenes: u64,
     pub(crate) points: serde_json::Number,
+}
+
+/// A suite that was uploaded to a course before.
+#[derive(Debug, Clone)]
+pub struct UploadedSuite {
+    /// The digest of the suite's archive.
+    pub digest: String,
+    /// The suite's name; empty if an older version of the server received it.
+    pub name: String,
+    /// The time of the last upload, in milliseconds since 1970; `None` if an older version of the server received it.
+    pub uploaded_at: Option<i64>,
+}
+
+from_row! { UploadedSuite { digest, name, uploaded_at } }
+
+impl UploadedSuite {
+    /// Returns the suite's name and the time of its upload, such as `Mini (uploaded 2026-11-22 08:45 UTC)`.
+    pub(crate) fn describe(&self) -> String {
+        let name = if self.name.is_empty() { self.digest.get(..12).unwrap_or_default() } else { &self.name };
+        let time = self.uploaded_at.map(|at| format!(" {} UTC", calendar::format_minute(at))).unwrap_or_default();
+        format!("{name} (uploaded{time})")
+    }
+}
+
+/// Returns the name of a suite, which is the grader's or one of `uploaded`.
+pub(in crate::domain) fn describe_suite(suite: &Suite, uploaded: &[UploadedSuite]) -> String {
+    match suite {
+        Suite::Named(name) => name.clone(),
+        Suite::Archive(digest) => {
+            let found = uploaded.iter().find(|uploaded| uploaded.digest == digest.to_string());
+            found.map_or_else(|| digest.short().to_owned(), UploadedSuite::describe)
+        }
+    }
+}
+
+/// Returns the suites that were uploaded to a course, newest first.
+pub(in crate::domain) async fn read_suites(
+    transaction: &mut Transaction,
+    course: i64,
+) -> Result<Vec<UploadedSuite>, DbError> {
+    let statement = "SELECT digest, name, uploaded_at FROM suite WHERE course = ?
+        ORDER BY coalesce(uploaded_at, 0) DESC, digest LIMIT 100";
+    transaction.all(statement, values![course]).await
 }
 
 /// Returns whether a name is a single file name on every system, and cannot be misread in messages.

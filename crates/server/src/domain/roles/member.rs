@@ -1,6 +1,7 @@
 //! A member of a course. Students see only their own submissions; staff see all submissions of the course.
 use crate::domain::{
     App,
+    assignments::suites::read_suites,
     view::{self, Account, Assignment, History, LogEntry, Submission},
 };
 use crate::{
@@ -184,7 +185,8 @@ impl Member {
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
-        Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
+        let uploaded = if self.is_staff { Some(read_suites(&mut transaction, self.course).await?) } else { None };
+        Ok(view::history(&mut transaction, id, submission.is_withheld, uploaded.as_deref()).await?)
     }
 
     /// Returns the report called `name` of the submission with the ID `id`.

@@ -2,10 +2,11 @@
 use crate::domain::{
     Member, Settings,
     accounts::identity,
+    assignments::suites::{UploadedSuite, read_suites},
     view::{self, Assignment, Event, EventQuery, Queue, Submission},
 };
 use crate::{
-    db::{DbError, FromRow, Transaction, from_row},
+    db::{DbError, FromRow, Transaction},
     lti::score,
     problem::{Problem, ensure},
     values,
@@ -38,19 +39,6 @@ pub struct NewSuite {
     /// Whether the suite hides groups.
     pub hides_groups: bool,
 }
-
-/// A suite that was uploaded to a course before.
-#[derive(Debug, Clone)]
-pub struct UploadedSuite {
-    /// The digest of the suite's archive.
-    pub digest: String,
-    /// The suite's name; empty if an older version of the server received it.
-    pub name: String,
-    /// The time of the last upload, in milliseconds since 1970; `None` if an older version of the server received it.
-    pub uploaded_at: Option<i64>,
-}
-
-from_row! { UploadedSuite { digest, name, uploaded_at } }
 
 /// Rejects a change if another person has changed the assignment since `revision`. The error names that person and
 /// their change.
@@ -218,10 +206,7 @@ impl Staff {
     /// # Errors
     /// Fails if the database does not answer.
     pub async fn suites(&self) -> Result<Vec<UploadedSuite>, Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT digest, name, uploaded_at FROM suite WHERE course = ?
-            ORDER BY coalesce(uploaded_at, 0) DESC, digest LIMIT 100";
-        Ok(transaction.all(statement, values![self.course]).await?)
+        Ok(read_suites(&mut self.app.0.database.read().await?, self.course).await?)
     }
 
     /// Returns whether the suite that graded any submission to an assignment hides groups. Only results that count

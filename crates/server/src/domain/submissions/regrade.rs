@@ -1,9 +1,13 @@
 //! Regrades: new results that are stored next to the old ones, at low priority. No grade changes until a member of
 //! staff applies the regrade; it can also be discarded.
-use crate::domain::{Settings, Staff, submissions::regrade_steps, view::Assignment};
+use crate::domain::{
+    Settings, Staff,
+    assignments::suites::{UploadedSuite, describe_suite, read_suites},
+    submissions::regrade_steps,
+    view::Assignment,
+};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
-    lti::score,
     problem::{Problem, ensure},
     task::{JUDGE_ERROR, Task},
     values,
@@ -15,10 +19,11 @@ use utoipa::ToSchema;
 const MAX_CHANGES: i64 = 1000;
 
 /// The state of a regrade.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RegradeState {
     /// Staff have not decided yet.
+    #[default]
     Open,
     /// The regrade's results count.
     Applied,
@@ -27,7 +32,7 @@ pub enum RegradeState {
 }
 
 /// A regrade, with the grades that it would change or has changed.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Regrade {
     /// The regrade's ID.
     pub id: i64,
@@ -179,7 +184,8 @@ impl Staff {
     /// Fails if there is no regrade with this ID.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let (mut transaction, assignment) = self.read_assignment(slug).await?;
-        find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
+        let uploaded = read_suites(&mut transaction, self.course).await?;
+        find(&mut transaction, &assignment, id, after.unwrap_or(0), &uploaded).await
     }
 
     /// Adds the submissions that arrived after an open regrade began.
@@ -224,7 +230,7 @@ impl Staff {
         let before = "SELECT settings, published_at FROM assignment WHERE id = ? {for update}";
         let row = transaction.one(before, values![regraded.id]).await?;
         let before = Settings::from_json(&row.text("settings")?)?;
-        let mut changes = before.grading_changes(&settings);
+        let mut changes = before.grading_changes(&settings, &read_suites(&mut transaction, self.course).await?);
         // The groups that the new suite hides are not those that were published.
         let withholds_groups = row.maybe_int("published_at")?.is_some() && !before.has_suite_of(&settings);
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1,
@@ -234,8 +240,6 @@ impl Staff {
         regrade_steps::apply(&mut transaction, id, (self.account.id, self.course, regraded.id), &reason).await?;
         if withholds_groups {
             changes.push("withheld hidden groups".to_owned());
-            // The grades on which the grader failed are also shown without the old suite's hidden groups.
-            score::send_all(&mut transaction, regraded.id, false).await?;
         }
         self.decide(transaction, regraded.id, id, "applied", &changes.join("; ")).await?;
         self.show_regrade(slug, id, None).await
@@ -299,16 +303,7 @@ impl FromRow for Regrade {
                 _ => RegradeState::Open,
             },
             settings: Settings::from_json(&row.text("settings")?)?,
-            submissions: 0,
-            left: 0,
-            failed: 0,
-            arrived: 0,
-            set_by_staff: Vec::new(),
-            changed: 0,
-            more: 0,
-            fewer: 0,
-            changes: Vec::new(),
-            next: None,
+            ..Self::default()
         }))
     }
 }
@@ -346,7 +341,13 @@ macro_rules! regraded {
     };
 }
 
-async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, after: i64) -> Result<Regrade, Problem> {
+async fn find(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    id: i64,
+    after: i64,
+    uploaded: &[UploadedSuite],
+) -> Result<Regrade, Problem> {
     let statement = regrades!("campaign.id = ? AND campaign.assignment = ?");
     let found: Option<Regrade> = transaction.find(statement, values![id, assignment.id]).await?;
     let mut regrade = found.ok_or_else(|| Problem::not_found("regrade"))?;
@@ -385,20 +386,19 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
             old.summary AS old_summary, old.version AS old_version, old.task AS old_task",
         "AND job.submission > ? ORDER BY job.submission LIMIT ?"
     );
-    regrade.changes = transaction.all(statement, values![id, after, MAX_CHANGES]).await?;
+    let rows = transaction.rows(statement, values![id, after, MAX_CHANGES]).await?;
+    regrade.changes = rows.iter().map(|row| read_change(row, uploaded)).collect::<Result<_, DbError>>()?;
     let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == MAX_CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
     Ok(regrade)
 }
 
-impl FromRow for Change {
-    fn from_row(row: &Row) -> Result<Self, DbError> {
-        Ok(read_row!(row => Self {
-            submission, number, login, old_code, old_points, old_max_points, old_summary, new_code, new_points,
-            new_max_points, new_summary;
-            why: describe_differences(row)?,
-        }))
-    }
+fn read_change(row: &Row, uploaded: &[UploadedSuite]) -> Result<Change, DbError> {
+    Ok(read_row!(row => Change {
+        submission, number, login, old_code, old_points, old_max_points, old_summary, new_code, new_points,
+        new_max_points, new_summary;
+        why: describe_differences(row, uploaded)?,
+    }))
 }
 
 /// Returns sentences about the values that differ.
@@ -419,9 +419,9 @@ fn describe_rules(rules: &Option<String>) -> String {
 }
 
 impl Settings {
-    /// Returns what differs in the way of grading.
-    pub(crate) fn grading_changes(&self, new: &Self) -> Vec<String> {
-        let suite = |settings: &Self| settings.suite_archive.clone().unwrap_or_else(|| settings.suite.clone());
+    /// Returns what differs in the way of grading. `uploaded` contains the suites of the course.
+    pub(crate) fn grading_changes(&self, new: &Self, uploaded: &[UploadedSuite]) -> Vec<String> {
+        let suite = |settings: &Self| describe_suite(&settings.suite(), uploaded);
         let hints = |settings: &Self| settings.hints.clone().unwrap_or_else(|| "the suite's".to_owned());
         let changed = list_changed([
             ("suite", suite(self), suite(new)),
@@ -436,7 +436,7 @@ impl Settings {
 }
 
 /// Returns the differences between two gradings of one submission, as sentences.
-fn describe_differences(row: &Row) -> Result<Vec<String>, DbError> {
+fn describe_differences(row: &Row, uploaded: &[UploadedSuite]) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no earlier grade".to_owned()]);
     };
@@ -444,7 +444,7 @@ fn describe_differences(row: &Row) -> Result<Vec<String>, DbError> {
     let read = |text: &str| serde_json::from_str::<Task>(text).ok();
     if let (Some(old), Some(new)) = (read(&old_task), read(&row.text("new_task")?)) {
         differences.extend(list_changed([
-            ("suite", old.suite.short(), new.suite.short()),
+            ("suite", describe_suite(&old.suite, uploaded), describe_suite(&new.suite, uploaded)),
             ("rules", describe_rules(&old.rules), describe_rules(&new.rules)),
             ("seconds", old.seconds.to_string(), new.seconds.to_string()),
             ("program", old.program, new.program),

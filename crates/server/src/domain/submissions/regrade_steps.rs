@@ -86,7 +86,7 @@ pub(in crate::domain) async fn apply(
         SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
     transaction.execute(statement, values![regrade_id, JUDGE_ERROR]).await?;
-    score::queue_regraded_scores(transaction, regrade_id).await
+    score::send_all(transaction, assignment, false).await.map(drop)
 }
 
 /// Cancels the waiting jobs of a regrade.

@@ -58,6 +58,8 @@ struct RegradePage {
     slug: String,
     assignment: Assignment,
     regrade: Regrade,
+    /// The settings that the regrade changes.
+    changes: Vec<String>,
 }
 
 /// The maximum number of students on a page.
@@ -182,6 +184,7 @@ pub(super) async fn show_regrade(
     render(&RegradePage {
         frame: class_frame(&staff, &assignment).with_parent(address, "Regrade"),
         slug,
+        changes: assignment.settings.grading_changes(&regrade.settings, &staff.suites().await?),
         assignment,
         regrade,
     })

@@ -35,13 +35,12 @@ pub(super) type SuiteOption = (String, String, bool);
 
 /// Returns the suites from which staff can choose: the ones that were uploaded to the course, and the grader's.
 pub(super) async fn list_suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
-    let mut suites = Vec::new();
-    for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
-        let name = if name.is_empty() { text::short_digest(&digest) } else { &name };
-        let time = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
-        let is_selected = settings.suite_archive.as_ref() == Some(&digest);
-        suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{time})"), is_selected));
-    }
+    let uploaded = staff.suites().await?;
+    let option = |suite: &UploadedSuite| {
+        let is_selected = settings.suite_archive.as_ref() == Some(&suite.digest);
+        (format!("{UPLOADED_PREFIX}{}", suite.digest), suite.describe(), is_selected)
+    };
+    let mut suites: Vec<SuiteOption> = uploaded.iter().map(option).collect();
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
     let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.titles().all(|(name, _)| name != *suite));

@@ -42,6 +42,21 @@ pub(super) fn shorten(text: &str) -> String {
     if beginning.len() < text.len() { format!("{words} ...") } else { beginning }
 }
 
+/// Formats the difference of two numbers of points, such as `+2.5`; empty if one of them is missing.
+pub(super) fn difference(old: &Option<String>, new: &Option<String>) -> String {
+    let read = |points: &Option<String>| points.as_ref()?.parse::<f64>().ok();
+    let Some((old, new)) = read(old).zip(read(new)) else { return String::new() };
+    let points = format_points((new - old).abs());
+    let sign = if points == "0" {
+        ""
+    } else if new < old {
+        "\u{2212}"
+    } else {
+        "+"
+    };
+    format!("{sign}{points}")
+}
+
 /// Formats a verdict's code, the points and, if it is known, the maximum.
 pub(super) fn result(code: &str, reached: &Option<String>, max_points: &Option<String>) -> String {
     let verdict = verdict(code);
@@ -127,6 +142,9 @@ mod tests {
         assert_eq!(points("68.08974358974359", "100.0"), "68.09 of 100");
         assert_eq!(points("0", "7.5"), "0 of 7.5");
         assert_eq!(super::points(&None, &None), "\u{2013}");
+        let difference = |old: &str, new: &str| super::difference(&Some(old.to_owned()), &Some(new.to_owned()));
+        assert_eq!(difference("81.25", "77.4"), "\u{2212}3.85");
+        assert_eq!([difference("40", "42.5"), difference("1", "1.001")], ["+2.5", "0"]);
     }
 
     #[test]

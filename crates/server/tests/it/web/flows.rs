@@ -258,12 +258,13 @@ async fn a_regrade_tells_of_grades_of_staff_and_of_newcomers(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "2"]);
     let admin = server.admin();
     server.course(&admin, "physics");
+    admin.send("PUT", "/api/v1/courses/physics/assignments/m1/suite", &[], b"name = 'Mini'\n").expect(200);
     let ada = server.member(&admin, "physics", "ada", "student");
     let id = ada.submit("physics", &program("WA", 40));
     ada.wait_for_grade("physics", id);
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
     admin.send("PUT", &mark, JSON, br#"{"points": 12.5, "comment": "by hand"}"#).expect(200);
-    let other = ada.submit("physics", &program("WA", 60));
+    let other = ada.submit("physics", &program("RTE", 60));
     ada.wait_for_grade("physics", other);
     assert!(!admin.get("/c/physics/a/m1/class").expect(200).text().contains("One regrade is open"));
     let base = "/api/v1/courses/physics/assignments/m1/regrades";
@@ -283,6 +284,10 @@ async fn a_regrade_tells_of_grades_of_staff_and_of_newcomers(fresh: Fresh) {
         format!("1 grade set by staff stays: 12.5, now of 200 (<a href=\"/c/physics/s/{id}\">ada, submission 1");
     assert!(page().contains(&stays) && page().contains("1 grade would change, 1 down"), "{}", page());
     assert!(page().contains("60 of 100 points") && page().contains("30 of 200 points"), "{}", page());
+    // Suites have names, and what both grades say is on the page once.
+    let suites = page().matches("suite: from Mini (uploaded 2").count();
+    let mistakes = page().matches("a step is wrong").count();
+    assert!((suites, mistakes) == (1, 1) && page().contains(">\u{2212}30<"), "{}", page());
     // Only the link to an open regrade is there, not a form that would be rejected.
     let class = admin.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains("One regrade is open") && !class.contains("name=\"reason\""), "{class}");
@@ -300,6 +305,8 @@ async fn a_regrade_tells_of_grades_of_staff_and_of_newcomers(fresh: Fresh) {
     admin.post_form(&format!("{place}/newcomers"), "").expect(409);
     let grade = ada.wait_for_grade("physics", id)["grade"].clone();
     assert_eq!([&grade["points"], &grade["max_points"]], ["12.5", "200"]);
+    let history = |by: &Client| by.get(&format!("/c/physics/s/{other}")).expect(200).text();
+    assert!(history(&admin).contains("suite Mini (uploaded 2") && !history(&ada).contains("Mini"), "{}", history(&ada));
 }
 
 async fn a_discarded_regrade_leaves_no_trace_in_grades(fresh: Fresh) {
