@@ -394,6 +394,9 @@ fn the_page_that_checks_traces_is_the_graders_and_has_a_policy_of_its_own() {
         let fresh = Fresh::sqlite().await.expect("SQLite");
         let server = Server::start(&fresh, &["--workers", "0"]);
         let page = server.visitor().get("/check").expect(200);
+        // Its name is replaced by a link.
+        let name = "<strong class=\"brand\">fosssim-oracle</strong>";
+        assert!(include_str!("../../../../browser/page/body.html").contains(name));
         assert!(page.text().ends_with("<a href=\"/\">Courses</a>the checker"), "{}", page.text());
         assert_eq!(page.header("content-security-policy"), Some("default-src 'none'"));
         assert_eq!(page.header("x-content-type-options"), Some("nosniff"));
