@@ -241,8 +241,10 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("rowheader", { name: "Eve" }).waitFor();
   assert.equal(await page.getByRole("link", { name: "ada, submission 1" }).count(), 0);
   await page.goto(`${address}/c/physics/s/1`);
-  // A mistyped login is reported at its field.
+  // The field lists the members, and reports a mistyped login.
   const other = page.getByLabel("Compare with");
+  await other.focus();
+  await page.waitForFunction(() => document.querySelector("#members [value=ada]")?.label === "Ada");
   await other.fill("adda");
   await page.getByRole("button", { name: "Compare" }).click();
   await page.waitForFunction(() => document.querySelector("input[name=with]:invalid"));

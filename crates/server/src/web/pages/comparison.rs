@@ -9,7 +9,7 @@ use crate::{
 };
 use askama::Template;
 use serde::Deserialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use url::form_urlencoded::byte_serialize;
 
 /// The submission to compare with: a login means this student's last graded submission, and a number means the same
@@ -26,34 +26,25 @@ struct ComparisonPage {
     frame: PageFrame,
     slug: String,
     submissions: [Submission; 2],
-    /// The number of scenes in which the submissions differ.
-    count: usize,
-    kinds: DifferingScenes,
+    scenes: Vec<DifferingScene>,
 }
 
-/// The scenes in which two results differ, grouped by the codes of both verdicts.
-type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
-
-/// The maximum number of scenes in a list that is shown unfolded.
-const MAX_OPEN_SCENES: usize = 6;
+/// A scene on which two results differ: the codes of both verdicts, and the scene's name.
+type DifferingScene = ([String; 2], String);
 
 /// Returns the fragment of a URL that leads to a scene in a report.
 fn scene_place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }
 
-/// Returns the scenes on which two results have different verdicts.
-fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
+/// Returns the scenes on which two results have different verdicts. Equal pairs of verdicts are next to each other.
+fn find_differing(one: &FailedScenes, other: &FailedScenes) -> Vec<DifferingScene> {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |failed: &FailedScenes, scene: &String| failed.get(scene).map_or("AC", String::as_str).to_owned();
-    let mut kinds = DifferingScenes::new();
-    for scene in names {
-        let codes = [code(one, scene), code(other, scene)];
-        if codes[0] != codes[1] {
-            kinds.entry(codes).or_default().push(scene.clone());
-        }
-    }
-    kinds
+    let pairs = names.into_iter().map(|scene| ([code(one, scene), code(other, scene)], scene.clone()));
+    let mut scenes: Vec<DifferingScene> = pairs.filter(|(codes, _)| codes[0] != codes[1]).collect();
+    scenes.sort();
+    scenes
 }
 
 pub(super) async fn show_page(
@@ -73,11 +64,10 @@ pub(super) async fn show_page(
     let results = [find_result(&first)?, find_result(&other)?];
     let stored = staff.stored_results(&results).await?;
     let [Some(result), Some(other_result)] = results.map(|number| stored.get(&number)) else { return Err(missing()) };
-    let kinds = find_differing(&result.failed, &other_result.failed);
+    let scenes = find_differing(&result.failed, &other_result.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
     let frame = grades::class_frame(&staff, &assignment).with_parent(address, "Side by side");
-    let count = kinds.values().map(Vec::len).sum();
-    render(&ComparisonPage { frame, slug, submissions: [first, other], count, kinds })
+    render(&ComparisonPage { frame, slug, submissions: [first, other], scenes })
 }
 
 #[cfg(test)]
@@ -93,9 +83,9 @@ mod tests {
             list(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]),
             list(&[("b", "WA"), ("c", "WA"), ("d", "WA")]),
         );
-        let kinds = find_differing(&one, &other);
+        let scenes = find_differing(&one, &other);
         let descriptions: Vec<String> =
-            kinds.iter().map(|(codes, scenes)| format!("{}: {}", codes.join(" "), scenes.join(" "))).collect();
-        assert_eq!(descriptions, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);
+            scenes.iter().map(|(codes, scene)| format!("{}: {scene}", codes.join(" "))).collect();
+        assert_eq!(descriptions, ["AC WA: d", "TLE WA: c", "WA AC: a", "WA AC: e"]);
     }
 }

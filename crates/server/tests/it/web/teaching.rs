@@ -254,7 +254,8 @@ fn check_beside(teacher: &Client, [one, mended]: [i64; 2]) {
     teacher.get(&format!("/c/physics/s/{one}/beside?with=carl")).expect(404);
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);
     let page = teacher.get(&format!("/c/physics/s/{mended}/beside?with=1")).expect(200).text();
-    assert!(page.contains("1 scene differs") && page.contains("#scene=Group%2Fhard"), "{page}");
+    let row = "<tr><th scope=\"row\">Group/hard</th>";
+    assert!(page.contains("1 scene differs") && page.contains(row) && page.contains("#scene=Group%2Fhard"), "{page}");
 }
 
 async fn late_work_is_taken_and_costs_points(fresh: Fresh) {

@@ -149,10 +149,16 @@ timeZone?.addEventListener("input", () => {
   }
   timeZone.setCustomValidity(fault);
 });
-// A mistyped login stays in its field, which names the fault.
+// The field for a login lists the members when it is used. A mistyped login stays in it, and it names the fault.
 const comparison = document.querySelector("form[action$='/beside']");
 if (comparison) {
   const other = comparison.elements.with;
+  const listMembers = async () => {
+    const answer = await fetch(other.list.dataset.from).catch(() => null);
+    const members = answer?.ok ? await answer.json() : [];
+    other.list.append(...members.map(({ login, name }) => new Option(name, login)));
+  };
+  other.addEventListener("focus", listMembers, { once: true });
   other.addEventListener("input", () => other.setCustomValidity(""));
   comparison.addEventListener("submit", async (event) => {
     event.preventDefault();
