@@ -29,23 +29,23 @@ pub fn main() -> ExitCode {
 }
 
 /// Runs any command except for the drop-in for the original.
-fn run(words: Vec<OsString>) -> ExitCode {
+fn run(arguments: Vec<OsString>) -> ExitCode {
     // This must come first, before a thread is started, because the process may be a sandbox's supervisor.
-    if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
+    if let Some(code) = crate::sandbox::supervisor_main(arguments.iter().cloned()) {
         return code;
     }
     commands::shell::complete_if_requested();
-    if words.get(1).is_some_and(|word| word == "sample") {
-        return sample::main(words.into_iter().skip(1), None);
+    if arguments.get(1).is_some_and(|argument| argument == "sample") {
+        return sample::main(arguments.into_iter().skip(1), None);
     }
     // If a write then fails, the incomplete output is removed, as after any other error.
     crate::sandbox::let_large_writes_fail();
-    let program = words.first().cloned().unwrap_or_default();
-    let command = match parse_command(&words) {
+    let program = arguments.first().cloned().unwrap_or_default();
+    let command = match parse_command(&arguments) {
         Ok(command) => command,
         Err(error) => return report_fault(&error),
     };
-    let parsed = command.try_get_matches_from(words);
+    let parsed = command.try_get_matches_from(arguments);
     let arguments = match parsed.and_then(|mut found| arguments::Arguments::from_arg_matches_mut(&mut found)) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -58,16 +58,18 @@ fn run(words: Vec<OsString>) -> ExitCode {
     // If options precede the command, it was not recognized above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
-        return crate::original::main(&name, &original.words, &original::CliServices);
+        return crate::original::main(&name, &original.arguments, &original::CliServices);
     }
     commands::run(&arguments.command).map_or_else(|error| report_fault(&error), ExitCode::from)
 }
 
 /// Returns the command line, with the defaults of the working folder.
-fn parse_command(words: &[OsString]) -> Result<clap::Command> {
+fn parse_command(arguments: &[OsString]) -> Result<clap::Command> {
     let command = arguments::Arguments::command();
     match std::env::current_dir() {
-        Ok(working) if words.iter().any(|word| word == "grade") => defaults::add_defaults(command, &working),
+        Ok(working) if arguments.iter().any(|argument| argument == "grade") => {
+            defaults::add_defaults(command, &working)
+        }
         _ => Ok(command),
     }
 }

@@ -15,14 +15,14 @@ impl Selection {
     /// # Errors
     ///
     /// Fails if a pattern is invalid or matches no name.
-    pub(super) fn new(words: &[String], names: &[&str]) -> Result<Self> {
+    pub(super) fn new(texts: &[String], names: &[&str]) -> Result<Self> {
         let mut patterns = Vec::new();
-        for word in words {
-            let bare = word.strip_prefix("asset:").unwrap_or(word);
+        for text in texts {
+            let bare = text.strip_prefix("asset:").unwrap_or(text);
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
-            let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
+            let pattern = Pattern::new(bare).with_context(|| format!("the pattern {text}"))?;
             if !names.iter().any(|name| matches_pattern(&pattern, name)) {
-                bail!("{word} matches no scene; the scenes are {}", nearest_names(bare, names));
+                bail!("{text} matches no scene; the scenes are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
         }
@@ -56,9 +56,9 @@ mod tests {
 
     const NAMES: [&str; 4] = ["Geometric/ball-on-edge", "Geometric/chain", "Impulses/ball", "Impulses/rope-bridge"];
 
-    fn selected(words: &[&str]) -> Vec<&'static str> {
-        let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
-        let selection = Selection::new(&words, &NAMES).expect("a selection");
+    fn selected(texts: &[&str]) -> Vec<&'static str> {
+        let texts: Vec<String> = texts.iter().map(|text| (*text).to_owned()).collect();
+        let selection = Selection::new(&texts, &NAMES).expect("a selection");
         NAMES.into_iter().filter(|name| selection.selects(name)).collect()
     }
 

@@ -17,13 +17,13 @@ use arguments::Options;
 use clap::Parser;
 use std::{ffi::OsString, process::ExitCode};
 
-/// Runs the sample. `words` is the command line, which begins with the program's name, and `pinned` is the mistake that
-/// is pinned to this program.
-pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
-    let words: Vec<OsString> = words.collect();
+/// Runs the sample. `arguments` is the command line, which begins with the program's name, and `pinned` is the mistake
+/// that is pinned to this program.
+pub fn main(arguments: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.collect();
     // If the command line is wrong, this ends the program with the status 2.
-    let options = Options::parse_from(&words);
-    let outcome = match options.choose_student(pinned, words.first()) {
+    let options = Options::parse_from(&arguments);
+    let outcome = match options.choose_student(pinned, arguments.first()) {
         _ if options.list => listing::print(options.json),
         Ok(student) => run::run(&options, student),
         Err(message) => {

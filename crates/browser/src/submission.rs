@@ -63,7 +63,7 @@ impl UploadedSubmission {
         };
         let mut files = |pattern: &str| find_matching_scenes(pattern, &request.scenes, dropped);
         let plan = plan::load_with(text, &mut files).map_err(|error| {
-            error.problems.iter().map(|(at, words)| format!("suite.toml:{at}: {words}\n")).collect::<String>()
+            error.problems.iter().map(|(at, message)| format!("suite.toml:{at}: {message}\n")).collect::<String>()
         })?;
         let group = |group: &PlannedGroup| -> Value {
             let scenes: Vec<&str> = group.scenes.iter().map(|task| task.name.as_str()).collect();

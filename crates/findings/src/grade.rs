@@ -45,9 +45,9 @@ pub struct CourseNote {
 impl CourseNote {
     /// Returns the note as one line. `text` and `link` format its text and its URL.
     pub fn format_line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
-        let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
+        let note = self.text.as_deref().map(|note| text(note.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
-        let parts: Vec<String> = [words, self.link.as_deref().map(link), points].into_iter().flatten().collect();
+        let parts: Vec<String> = [note, self.link.as_deref().map(link), points].into_iter().flatten().collect();
         parts.join("; ")
     }
 }

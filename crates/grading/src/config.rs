@@ -248,7 +248,7 @@ pub(super) fn read_with_problems(text: &str) -> (Suite, Vec<(Position, String)>)
     let read = |group: Spanned<RawGroup>| read_group(&mut places, &mut problems, group.into_inner(), hints);
     let groups: Vec<Group> = groups.map(read).collect();
     problems.sort_by_key(|(span, _)| span.start);
-    let place = |(span, words): Problem| (places.position(span.start), words);
+    let place = |(span, message): Problem| (places.position(span.start), message);
     let mut problems: Vec<(Position, String)> = problems.into_iter().map(place).collect();
     let mut names = BTreeSet::new();
     for group in &groups {
@@ -372,14 +372,14 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
 /// Reads the course's note on a mistake of the catalog, or on a finding that is not in the catalog.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
-    let word = key.get_ref().as_str();
-    let is_known = find(word).is_some() || find_edit(word).is_some() || Explanation::is_general_key(word);
+    let id = key.get_ref().as_str();
+    let is_known = find(id).is_some() || find_edit(id).is_some() || Explanation::is_general_key(id);
     if !is_known {
-        let remedy = find_closest(word, all_rows().map(|row| row.id)).map_or_else(
+        let remedy = find_closest(id, all_rows().map(|row| row.id)).map_or_else(
             || "; `fosssim-oracle sample --list` shows all".to_owned(),
             |meant| format!("; did you mean \"{meant}\"?"),
         );
-        problems.push((key.span(), format!("no mistake has the key \"{word}\"{remedy}")));
+        problems.push((key.span(), format!("no mistake has the key \"{id}\"{remedy}")));
     }
     let note = read_note(problems, raw.text, raw.link, raw.points)?;
     Some((key.into_inner(), note))

@@ -143,14 +143,14 @@ pub(super) struct SharedGrading<'a> {
 
 impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        let (folders, words, kept, claimed) =
+        let (folders, conditions, kept, claimed) =
             (Folders::default(), grader.conditions(), Mutex::default(), Mutex::default());
         let (full, contents, reference, released) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), Condvar::new());
         Self {
             cancellation,
             results,
             folders,
-            conditions: words,
+            conditions,
             stored_keys: kept,
             claimed_keys: claimed,
             key_released: released,
@@ -174,8 +174,8 @@ impl<'a> SharedGrading<'a> {
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> ResultKey {
         // A program may depend on its own name, so the name belongs to the key.
         let own = [scene.name.as_str(), called, students.describe().0];
-        let words: Vec<&str> = self.conditions.iter().map(String::as_str).chain(own).collect();
-        ResultKey::from_program(digest, &scene.xml, &words)
+        let parts: Vec<&str> = self.conditions.iter().map(String::as_str).chain(own).collect();
+        ResultKey::from_program(digest, &scene.xml, &parts)
     }
 
     /// Finds a stored result, or the result of an identical program in this grading. A result is not used if a

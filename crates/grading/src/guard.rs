@@ -52,9 +52,9 @@ fn install_hook() {
 
 /// Returns the message of a panic as a single line.
 fn panic_message(payload: &(dyn Any + Send)) -> String {
-    let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
-    let words = words.or_else(|| payload.downcast_ref::<String>().cloned());
-    words.map_or_else(|| "a panic without a message".to_owned(), |words| words.replace('\n', " "))
+    let message = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    let message = message.or_else(|| payload.downcast_ref::<String>().cloned());
+    message.map_or_else(|| "a panic without a message".to_owned(), |message| message.replace('\n', " "))
 }
 
 #[cfg(test)]
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_panic_comes_back_with_its_words_and_place() {
+    fn a_panic_comes_back_with_its_message_and_place() {
         let fault = catch_panic(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
         assert!(fault.starts_with("no tea left at ") && fault.contains("guard.rs:"), "{fault}");
         assert_eq!(catch_panic(|| 7), Ok(7));

@@ -11,21 +11,21 @@ use std::{
 pub struct ResultKey(String);
 
 impl ResultKey {
-    /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `words`, which
+    /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `parts`, which
     /// name everything else that matters, such as the rules, the limits, the command and the kind of judging. The
     /// grader itself also belongs to the key.
-    pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
-        Self::from_parts(running_build(), program, scene, words)
+    pub fn from_program(program: &blake3::Hash, scene: &[u8], parts: &[&str]) -> Self {
+        Self::from_parts(running_build(), program, scene, parts)
     }
 
     /// Returns the key of a run that is judged by the build `judge` of the grader.
-    fn from_parts(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
+    fn from_parts(judge: &str, program: &blake3::Hash, scene: &[u8], parts: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
         hasher.update(blake3::hash(scene).as_bytes());
-        for word in words.iter().chain(&[judge]) {
-            hasher.update(&(word.len() as u64).to_le_bytes());
-            hasher.update(word.as_bytes());
+        for part in parts.iter().chain(&[judge]) {
+            hasher.update(&(part.len() as u64).to_le_bytes());
+            hasher.update(part.as_bytes());
         }
         Self(hasher.finalize().to_hex().as_str()[..32].to_owned())
     }

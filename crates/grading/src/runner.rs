@@ -82,7 +82,7 @@ impl Runner<'_> {
             match self.grade_once(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < MAX_ATTEMPTS => attempt += 1,
-                Err(words) => return task.failure_result(Failure::Machine(words)),
+                Err(error) => return task.failure_result(Failure::Machine(error)),
             }
         }
     }
@@ -264,8 +264,9 @@ impl Runner<'_> {
         self.command
             .iter()
             .skip(1)
-            .map(|word| {
-                word.replace("{scene}", SCENE_FILE)
+            .map(|argument| {
+                argument
+                    .replace("{scene}", SCENE_FILE)
                     .replace("{trace}", TRACE_FILE)
                     .replace("{program}", &program.to_string_lossy())
                     .into()

@@ -146,7 +146,7 @@ impl Shrinker<'_> {
                     return None;
                 }
                 runs += 1;
-                let observed = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
+                let observed = self.observe(scene, &mut spent).map_err(|error| fault = Err(error)).ok();
                 let observed = observed.filter(|_| !self.runner.cancellation.is_canceled())?;
                 let is_reproduced = reason.is_reproduced(scene, &observed, is_only_reason);
                 held = if is_reproduced { Some(observed) } else { held.take() };

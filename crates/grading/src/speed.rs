@@ -62,9 +62,9 @@ impl SubmissionGrading<'_> {
         let (staged, reference) = (self.staged_program(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
         let mut timing = Timing { machine: machine_name(), runs: Vec::new(), failed: None };
-        let run = |program: &StagedProgram, words: &[String]| {
+        let run = |program: &StagedProgram, command: &[String]| {
             let runner = Runner {
-                command: words,
+                command,
                 hints: Hints::Where,
                 student_hints: Hints::Where,
                 trace_location: None,

@@ -70,8 +70,8 @@ pub(super) enum CopyError {
 }
 
 impl From<String> for CopyError {
-    fn from(words_of_at: String) -> Self {
-        Self::Grader(words_of_at)
+    fn from(message: String) -> Self {
+        Self::Grader(message)
     }
 }
 

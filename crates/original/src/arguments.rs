@@ -1,7 +1,8 @@
 //! The original's command line (oracle-behavior.md 1): the parsed arguments, or the message and exit code of an error.
 //!
-//! Words are bytes, so file names need not be UTF-8. The rules are those of the original's argument library. Value and
-//! flag are separate words, the first invalid word ends the program, and `--help` and `--version` take effect in order.
+//! Arguments are bytes, so file names need not be UTF-8. The rules are those of the original's argument library. A flag
+//! and its value are separate arguments, the first invalid argument ends the program, and `--help` and `--version` take
+//! effect in order.
 use crate::{
     flags::{FLAGS, Flag},
     usage,
@@ -27,31 +28,31 @@ pub(crate) struct EarlyExit {
     pub(crate) exit_code: u8,
 }
 
-/// Parses the words after the program's name.
+/// Parses the arguments after the program's name.
 ///
 /// # Errors
 /// Fails with a text to print and an exit code: help, version, or a parse error.
-pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, EarlyExit> {
+pub(crate) fn parse(program: &[u8], arguments: &[Vec<u8>]) -> Result<Arguments, EarlyExit> {
     let mut values: [Option<&[u8]>; FLAGS.len()] = [None; FLAGS.len()];
-    let mut words = words.iter().map(Vec::as_slice);
-    while let Some(word) = words.next() {
-        match word {
+    let mut arguments = arguments.iter().map(Vec::as_slice);
+    while let Some(argument) = arguments.next() {
+        match argument {
             b"--" | b"--ignore_rest" => break,
             b"-h" | b"--help" => return Err(EarlyExit { stdout: usage::help_text(program), ..EarlyExit::default() }),
             b"--version" => return Err(EarlyExit { stdout: usage::version_text(program), ..EarlyExit::default() }),
-            // The library treats these words as bundles of flags without any flag left.
+            // The library treats these arguments as bundles of flags without any flag left.
             b"" | b"-" => continue,
             _ => {}
         }
-        let Some(index) = FLAGS.iter().position(|flag| matches_flag(flag, word)) else {
-            return Err(wrong_argument_exit(program, word, b"Couldn't find match for argument"));
+        let Some(index) = FLAGS.iter().position(|flag| matches_flag(flag, argument)) else {
+            return Err(wrong_argument_exit(program, argument, b"Couldn't find match for argument"));
         };
         let flag = &FLAGS[index];
         let title = format!("-{} (--{})", flag.letter, flag.name);
         if values[index].is_some() {
             return Err(wrong_argument_exit(program, title.as_bytes(), b"Argument already set!"));
         }
-        let Some(value) = words.next() else {
+        let Some(value) = arguments.next() else {
             return Err(wrong_argument_exit(program, title.as_bytes(), b"Missing a value for this argument!"));
         };
         if flag.boolean
@@ -79,10 +80,10 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Earl
     })
 }
 
-fn matches_flag(flag: &Flag, word: &[u8]) -> bool {
-    match word.strip_prefix(b"--") {
+fn matches_flag(flag: &Flag, argument: &[u8]) -> bool {
+    match argument.strip_prefix(b"--") {
         Some(name) => name == flag.name.as_bytes(),
-        None => word.strip_prefix(b"-") == Some(flag.letter.as_bytes()),
+        None => argument.strip_prefix(b"-") == Some(flag.letter.as_bytes()),
     }
 }
 
@@ -133,13 +134,13 @@ fn failure_exit(program: &[u8], argument: &[u8], text: &[u8]) -> EarlyExit {
 mod tests {
     use super::*;
 
-    fn run(words: &[&str]) -> Result<Arguments, EarlyExit> {
-        let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
-        parse(b"./FOSSSimOracle", &words)
+    fn run(arguments: &[&str]) -> Result<Arguments, EarlyExit> {
+        let arguments: Vec<Vec<u8>> = arguments.iter().map(|argument| argument.as_bytes().to_vec()).collect();
+        parse(b"./FOSSSimOracle", &arguments)
     }
 
-    fn error(words: &[&str]) -> String {
-        let ending = run(words).unwrap_err();
+    fn error(arguments: &[&str]) -> String {
+        let ending = run(arguments).unwrap_err();
         assert_eq!((ending.exit_code, ending.stdout.is_empty()), (1, true));
         let text = String::from_utf8(ending.stderr).unwrap();
         assert!(text.ends_with("For complete USAGE and HELP type: \n   ./FOSSSimOracle --help\n\n"));
@@ -162,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn parse_errors_have_the_originals_words() {
+    fn parse_errors_have_the_originals_texts() {
         assert_eq!(error(&[]), "PARSE ERROR:  \n             Required argument missing: scene");
         assert_eq!(error(&["-sx"]), "PARSE ERROR: Argument: -sx\n             Couldn't find match for argument");
         assert_eq!(

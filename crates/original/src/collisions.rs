@@ -54,7 +54,7 @@ mod tests {
     }
 
     #[test]
-    fn an_unknown_kind_has_no_words() {
+    fn an_unknown_kind_has_no_text() {
         let line = describe_remark(&Remark::Superfluous(logged(9, 1.0, 2.0))).unwrap();
         assert_eq!(line, "  Superfluous collision: \n");
     }

@@ -11,7 +11,7 @@
 //! pages. It is therefore a separate crate, compiled with full optimization, and excludes features that few runs need.
 //! Its caller provides pictures and messages ([`Services`]).
 //!
-//! A program becomes the replacement by its name or its first word:
+//! A program becomes the replacement by its name or its first argument:
 //!
 //! ```no_run
 //! use fosssim_original::{Pictures, Services};
@@ -30,7 +30,7 @@
 //! }
 //!
 //! fn main() -> ExitCode {
-//!     fosssim_original::run_if_requested(&Plain).unwrap_or_else(|_words| ExitCode::from(2))
+//!     fosssim_original::run_if_requested(&Plain).unwrap_or_else(|_arguments| ExitCode::from(2))
 //! }
 //! ```
 #![forbid(unsafe_code)]
@@ -60,9 +60,9 @@ use std::{
 const PROGRAM_PREFIX: &[u8] = b"FOSSSimOracle";
 
 /// Returns the name for messages and the arguments if the command line requests the replacement, otherwise `None`. It
-/// does so by the program's name `FOSSSimOracle...`, or by the first word `original`.
-fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
-    let (program, rest) = words.split_first()?;
+/// does so by the program's name `FOSSSimOracle...`, or by the first argument `original`.
+fn parse_call(arguments: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
+    let (program, rest) = arguments.split_first()?;
     let program = program.as_bytes();
     let file = program.rsplit(|&byte| byte == b'/').next().unwrap_or_default();
     if file.starts_with(PROGRAM_PREFIX) {
@@ -77,13 +77,13 @@ fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
 /// # Errors
 /// Fails with the arguments for other commands, beginning with the program's own name.
 pub fn run_if_requested(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
-    let words: Vec<OsString> = env::args_os().collect();
-    match parse_call(&words) {
-        Some((program, words)) => {
+    let arguments: Vec<OsString> = env::args_os().collect();
+    match parse_call(&arguments) {
+        Some((program, arguments)) => {
             outside.prepare();
-            Ok(main(&program, words, outside))
+            Ok(main(&program, arguments, outside))
         }
-        None => Err(words),
+        None => Err(arguments),
     }
 }
 
@@ -109,11 +109,11 @@ pub trait Pictures {
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 
-/// Runs the replacement. `program` is the name in its messages, and `words` are the arguments.
-pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitCode {
-    let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
-    let code = match arguments::parse(program, &words) {
-        Ok(arguments) => run::run(&arguments, &words, outside),
+/// Runs the replacement. `program` is the name in its messages, and `arguments` are the arguments after it.
+pub fn main(program: &[u8], arguments: &[OsString], outside: &dyn Services) -> ExitCode {
+    let arguments: Vec<Vec<u8>> = arguments.iter().map(|argument| argument.as_bytes().to_vec()).collect();
+    let code = match arguments::parse(program, &arguments) {
+        Ok(parsed) => run::run(&parsed, &arguments, outside),
         Err(ending) => {
             // A closed output or a full disk does not change the exit code, because the original ignores both.
             let mut stdout = io::stdout().lock();
@@ -136,9 +136,9 @@ mod tests {
 
     #[test]
     fn the_name_decides_by_its_beginning_and_not_by_its_folder() {
-        let parse_call = |words: &[&str]| {
-            let words: Vec<OsString> = words.iter().map(OsString::from).collect();
-            parse_call(&words).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
+        let parse_call = |arguments: &[&str]| {
+            let arguments: Vec<OsString> = arguments.iter().map(OsString::from).collect();
+            parse_call(&arguments).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
         };
         assert_eq!(parse_call(&["FOSSSimOracle"]), Some(("FOSSSimOracle".to_owned(), 0)));
         assert_eq!(parse_call(&["../bin/FOSSSimOracleT2M2", "-h"]), Some(("../bin/FOSSSimOracleT2M2".to_owned(), 1)));

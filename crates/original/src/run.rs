@@ -26,8 +26,8 @@ use std::{
 /// The exit code of every failure.
 const FAILURE_CODE: u8 = 1;
 
-/// Runs with parsed arguments, and returns the exit code. `words` are the raw arguments.
-pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Services) -> u8 {
+/// Runs with parsed arguments, and returns the exit code. `raw_arguments` are the raw arguments.
+pub(crate) fn run(arguments: &Arguments, raw_arguments: &[Vec<u8>], outside: &dyn Services) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
         return print_error(INPUT_AND_OUTPUT);
     }
@@ -70,9 +70,9 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
                 }
                 return grade(&scene.scene, trace, transcript);
             }
-            // The original prints the third word of the command line instead of the file's name.
-            let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
-            crate::print_error(&open_failure("input", third_word));
+            // The original prints the third argument of the command line instead of the file's name.
+            let third_argument = raw_arguments.get(2).map(Vec::as_slice).unwrap_or_default();
+            crate::print_error(&open_failure("input", third_argument));
             transcript.print_open_failure();
             drop(transcript.finish());
             FAILURE_CODE

@@ -2,8 +2,8 @@
 use crate::untrusted_text::to_one_line;
 
 /// Returns one annotation. The level is `error` or `warning`.
-pub(crate) fn render_annotation(level: &str, title: &str, words: &str) -> String {
-    join_annotation(level, title, [words])
+pub(crate) fn render_annotation(level: &str, title: &str, text: &str) -> String {
+    join_annotation(level, title, [text])
 }
 
 /// Returns one annotation whose text has several lines.

@@ -89,7 +89,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let formulas: BTreeSet<&str> = scene.forces.iter().map(force_formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
     text.extend(render_penalty(scene, &force_positions));
-    let words = match scene.integrator {
+    let rule = match scene.integrator {
         Integrator::ExplicitEuler => "x becomes x + h v, v becomes v + h a",
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",
         Integrator::LinearizedImplicitEuler => "v becomes v + d, then x becomes x + h v",
@@ -98,7 +98,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
                 each solves A d = b, with b = -M d - h gradient and A at x + h (v + d) and v + d. This is the first one"
         }
     };
-    text += &format!("\nStep {step}, h = {}: {words}\n", format_short(h));
+    text += &format!("\nStep {step}, h = {}: {rule}\n", format_short(h));
     text.extend(systems.0.0.map(|matrix| render_system(scene, matrix, &sum)));
     let rows = particles.map(|particle| {
         let [v, x] = [&end.velocities, &end.positions].map(|values| format_vector(vector_at(values, particle)));

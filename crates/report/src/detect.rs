@@ -189,8 +189,8 @@ impl DetectReport<'_> {
 
 fn write_title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     let run = trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
-    let words = PairText(pair).to_string();
-    let (first, rest) = words.split_at(1);
+    let title = PairText(pair).to_string();
+    let (first, rest) = title.split_at(1);
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
@@ -236,7 +236,7 @@ fn describe_logged_polynomial(role: &str, expected: &[f64], own: &[f64], style: 
 
 /// Describes what the mathematically right approach polynomial would change.
 fn compare_approach(course: &PairDecision, right: &PairDecision, number: FormatFn) -> String {
-    let says = match (course.decision, right.decision) {
+    let result = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
@@ -244,7 +244,7 @@ fn compare_approach(course: &PairDecision, right: &PairDecision, number: FormatF
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
-    format!("  with the mathematically right approach polynomial: {says}\n")
+    format!("  with the mathematically right approach polynomial: {result}\n")
 }
 
 /// Describes the objects of a pair and their motions.
@@ -282,9 +282,9 @@ fn polynomial_lines(name: &str, curve: &StudiedPolynomial, number: FormatFn, sty
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
-        let words =
+        let line =
             format!("logged without leading coefficients below 1e-12; with them: {}", format_polynomial(all, number));
-        text += &format!("    {}\n", style.paint(TextStyle::Faint, &words));
+        text += &format!("    {}\n", style.paint(TextStyle::Faint, &line));
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
@@ -306,12 +306,12 @@ fn format_intervals(list: &[Interval], number: FormatFn) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
-    let words = |interval: &Interval| match interval {
+    let describe = |interval: &Interval| match interval {
         Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", format_rounded_or(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
         Interval { lo, hi } => format!("({}, {})", format_rounded_or(*lo, number), format_rounded_or(*hi, number)),
     };
-    list.iter().map(words).collect::<Vec<_>>().join(" and ")
+    list.iter().map(describe).collect::<Vec<_>>().join(" and ")
 }
 
 /// Formats a polynomial as text, such as `-0.25 t^2 + t - 0.1875`. An empty list is the zero polynomial. Zero

@@ -28,9 +28,9 @@ pub fn to_mathematical_signs(line: &str) -> String {
 }
 
 /// Writes a name in a formula with subscript digits and Greek letters.
-fn format_symbol(word: &str, after: &str) -> String {
-    let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
-    let number = &word[letters.len()..];
+fn format_symbol(name: &str, after: &str) -> String {
+    let letters = name.trim_end_matches(|c: char| c.is_ascii_digit());
+    let number = &name[letters.len()..];
     let is_index = (1..=2).contains(&number.len());
     match letters {
         "alpha" if number.is_empty() => "α".to_owned(),
@@ -39,9 +39,9 @@ fn format_symbol(word: &str, after: &str) -> String {
         "re" if number.is_empty() => "rₑ".to_owned(),
         "d" if number.len() == 2 => format!("Δx{}", shift_digits(number, '₀')),
         "dx" if number.is_empty() || is_index => format!("Δx{}", shift_digits(number, '₀')),
-        _ if word.starts_with("dx_") => format!("Δ{}", &word[1..]),
+        _ if name.starts_with("dx_") => format!("Δ{}", &name[1..]),
         _ if letters.len() == 1 && letters != "_" && is_index => format!("{letters}{}", shift_digits(number, '₀')),
-        _ => word.to_owned(),
+        _ => name.to_owned(),
     }
 }
 

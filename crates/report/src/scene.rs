@@ -13,9 +13,9 @@ pub fn list_scenes(scenes: &[(&str, Scene)], style: Style) -> String {
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - line_width::count_columns(name));
         let size = style.paint(TextStyle::Faint, &format!("({})", describe_size(scene)));
-        let words =
+        let description =
             scene.description.as_deref().map(|text| to_one_line(first_sentence(text)) + " ").unwrap_or_default();
-        format!("asset:{name}{blanks}  {words}{size}\n")
+        format!("asset:{name}{blanks}  {description}{size}\n")
     };
     scenes.iter().map(line).collect()
 }

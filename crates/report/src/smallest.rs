@@ -22,7 +22,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 /// Renders the report as text.
 pub fn render_text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first_finding: first, explanations, .. } = small;
-    let heading = |words: &str| format!("{}\n", style.paint(TextStyle::Strong, words));
+    let heading = |title: &str| format!("{}\n", style.paint(TextStyle::Strong, title));
     let explanation_lines = explanation_texts(&explanations[..explanations.len().min(1)], style);
     let first = first.as_ref().filter(|_| explanation_lines.is_empty()).map(describe_first_difference);
     let causes = note.iter().cloned().chain(first).chain(explanation_lines).map(|line| format!("  {line}\n"));

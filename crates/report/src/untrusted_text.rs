@@ -53,12 +53,12 @@ pub fn clean_output(text: &str) -> String {
     strip_control_characters(&remove_escape_codes(text))
 }
 
-/// Quotes a word for a shell, if necessary.
-pub fn quote(word: &str) -> String {
+/// Quotes an argument for a shell, if necessary.
+pub fn quote(argument: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
+    match !argument.is_empty() && argument.chars().all(is_plain) {
+        true => argument.to_owned(),
+        false => format!("'{}'", argument.replace('\'', "'\\''")),
     }
 }
 
@@ -123,7 +123,7 @@ mod tests {
     }
 
     #[test]
-    fn words_with_blanks_and_quotes_stay_one_word() {
+    fn arguments_with_blanks_and_quotes_stay_one_argument() {
         assert_eq!(quote("scenes/test00.xml"), "scenes/test00.xml");
         assert_eq!(quote("asset:Group/name"), "asset:Group/name");
         assert_eq!(quote("my scene.xml"), "'my scene.xml'");

@@ -392,7 +392,7 @@ fn build_order(
             .script
             .iter()
             .flat_map(|script| &script.interpreter_arguments)
-            .map(|word| word.as_bytes().to_vec())
+            .map(|argument| argument.as_bytes().to_vec())
             .collect(),
         sanitizers: job.sanitizers,
         layers,

@@ -106,8 +106,8 @@ impl fmt::Display for Need {
 pub fn skip(need: Need, reason: impl fmt::Display) {
     let reason = reason.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();
-    if let Err(words) = check_allowed(need, &required) {
-        panic!("{words}: {reason}");
+    if let Err(message) = check_allowed(need, &required) {
+        panic!("{message}: {reason}");
     }
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
     eprintln!("skipped {test}: {reason}");
@@ -120,13 +120,13 @@ pub fn skip(need: Need, reason: impl fmt::Display) {
 
 /// Returns an error if `FOSSSIM_REQUIRE` forbids that a test is skipped for want of `need`.
 fn check_allowed(need: Need, required: &str) -> Result<(), String> {
-    for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
-        if word == "all" || word == need.name() {
+    for name in required.split(',').map(str::trim).filter(|name| !name.is_empty()) {
+        if name == "all" || name == need.name() {
             return Err(format!("{REQUIRE} asks for {need}, and it is not here"));
         }
-        if !NAMES.iter().any(|(_, known)| *known == word) {
+        if !NAMES.iter().any(|(_, known)| *known == name) {
             let known = NAMES.map(|(_, known)| known).join(", ");
-            return Err(format!("{REQUIRE} asks for `{word}`; the known words are all, {known}"));
+            return Err(format!("{REQUIRE} asks for `{name}`; the known words are all, {known}"));
         }
     }
     Ok(())

@@ -162,8 +162,8 @@ pub(in crate::cli) struct ShardArgument {
 impl FromStr for ShardArgument {
     type Err = &'static str;
 
-    fn from_str(word: &str) -> Result<Self, Self::Err> {
-        let parts = word.split_once('/').and_then(|(number, total)| Some((number.parse().ok()?, total.parse().ok()?)));
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let parts = text.split_once('/').and_then(|(number, total)| Some((number.parse().ok()?, total.parse().ok()?)));
         match parts {
             Some((number, total)) if (1..=total).contains(&number) && total <= MAX_SHARDS => Ok(Self { number, total }),
             _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N, and N is 10000 at most"),

@@ -101,8 +101,8 @@ pub(super) enum Command {
 }
 
 /// Parses the number of a step; 0 is the first record.
-fn to_step(word: &str) -> Result<u32, &'static str> {
-    word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
+fn to_step(text: &str) -> Result<u32, &'static str> {
+    text.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
 
 /// The format of the report on a trace.
@@ -334,7 +334,7 @@ Example:
 pub(super) struct OriginalArguments {
     /// The original's own flags; original --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "FLAGS")]
-    pub(super) words: Vec<OsString>,
+    pub(super) arguments: Vec<OsString>,
 }
 
 #[derive(Debug, Args)]
@@ -347,7 +347,7 @@ Example:
 pub(super) struct ServeArguments {
     /// The options of fosssim-server; serve --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
-    pub(super) words: Vec<OsString>,
+    pub(super) arguments: Vec<OsString>,
 }
 
 #[derive(Debug, Args)]

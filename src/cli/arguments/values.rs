@@ -7,8 +7,8 @@ use clap::{
 use std::str::FromStr;
 
 /// Parses a whole number that is at least one.
-pub(in crate::cli) fn parse_positive<N: FromStr>(word: &str) -> Result<N, &'static str> {
-    word.trim().parse().map_err(|_| "the value must be a whole number of at least 1")
+pub(in crate::cli) fn parse_positive<N: FromStr>(text: &str) -> Result<N, &'static str> {
+    text.trim().parse().map_err(|_| "the value must be a whole number of at least 1")
 }
 
 /// The format of a report.

@@ -73,19 +73,19 @@ fn write_output(arguments: &DetectArguments, inputs: &[Identity], text: impl FnO
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NO_PAIR: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
-    let word = arguments.word.as_deref().context(NO_PAIR)?;
-    pair::parse_motion(word, arguments.radii.as_deref())
+    let pair = arguments.word.as_deref().context(NO_PAIR)?;
+    pair::parse_motion(pair, arguments.radii.as_deref())
 }
 
 /// Reports on a pair of a scene, in a step of a trace or of the reference's own run.
 fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::read_scene(name)?;
-    let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
+    let (Some(step), Some(typed)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.step_count();
     if step == 0 || step > steps {
         bail!("there is no step {step}; the steps of the scene {} are 1 to {steps}", scene.name);
     }
-    let pair = pair::find_pair(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
+    let pair = pair::find_pair(typed, &scene.scene).with_context(|| format!("the pair {typed}"))?;
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();
     let (before, traced) = match &arguments.trace {
         Some(trace) => {

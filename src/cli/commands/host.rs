@@ -69,9 +69,9 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
     if let Some(program) = &arguments.program {
         write_sample(mistake, program)?;
-        let words =
+        let message =
             format!("A program that makes the mistake {}: {}\n", mistake.replace(',', " and "), program.display());
-        console::print(&words)?;
+        console::print(&message)?;
         return Ok(exit::ACCEPTED);
     }
     let folder = tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("no temporary folder")?;
@@ -114,8 +114,8 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         console::print("The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
             output::write(&arguments.output, pages.render_grade(grade, None, Audience::Staff).as_bytes())?;
-            let words = format!("The report on the wrong sample, for a browser: {}\n", arguments.output.display());
-            console::print(&words)?;
+            let message = format!("The report on the wrong sample, for a browser: {}\n", arguments.output.display());
+            console::print(&message)?;
         }
         Ok(exit::ACCEPTED)
     } else {

@@ -137,7 +137,7 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
     }
     // A failure while drawing must not cost points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
-        Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
+        Some(Card::from_text(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
     let cut = "The trace is longer than the part that the grader keeps, so the pictures end early.";
     card.map(|card| if judged.is_cut { card.with_remark(cut) } else { card }.to_stored())

@@ -31,12 +31,12 @@ pub(super) struct Report {
 /// # Errors
 ///
 /// Fails if a format is unknown, or if two reports have the same destination.
-pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
+pub(super) fn read_reports(requests: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
-    for word in words {
-        let (name, file) = match word.split_once('=') {
+    for request in requests {
+        let (name, file) = match request.split_once('=') {
             Some((name, file)) => (name, Some(PathBuf::from(file))),
-            None => (word.as_str(), None),
+            None => (request.as_str(), None),
         };
         let Some(format) = Format::from_name(name) else {
             let format_names: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();

@@ -14,6 +14,6 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
         );
     }
     // The call returns only if it fails.
-    let error = Command::new(&server).arg("serve").args(&arguments.words).exec();
+    let error = Command::new(&server).arg("serve").args(&arguments.arguments).exec();
     Err(error).with_context(|| format!("cannot start {}", server.display()))
 }

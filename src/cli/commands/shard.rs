@@ -196,7 +196,7 @@ fn plan_digest(plan: &Plan, arguments: &Arguments) -> String {
         hasher.update(&(bytes.len() as u64).to_le_bytes());
         hasher.update(bytes);
     };
-    let words = format!(
+    let settings = format!(
         "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
         plan.command,
         plan.rules,
@@ -208,7 +208,7 @@ fn plan_digest(plan: &Plan, arguments: &Arguments) -> String {
         arguments.recorded,
         arguments.fail_fast
     );
-    add(words.as_bytes());
+    add(settings.as_bytes());
     for group in &plan.groups {
         add(group.name.as_bytes());
         add(format!("{:?}", group.marking).as_bytes());

@@ -118,8 +118,9 @@ impl<'a> Search<'a> {
             Some("ninja") => &["build.ninja"],
             _ => &[],
         };
-        let words = build.command.iter().map(String::as_str).filter(|word| !word.starts_with('/') && *word != ".");
-        usual.iter().copied().chain(words).any(holds)
+        let arguments =
+            build.command.iter().map(String::as_str).filter(|argument| !argument.starts_with('/') && *argument != ".");
+        usual.iter().copied().chain(arguments).any(holds)
     }
 
     /// Returns whether a folder is the one for results, or contains the results of an earlier grading.

@@ -105,9 +105,9 @@ fn describe_size(plan: &Plan) -> String {
 
 /// Formats points, such as `1 point` or `12.5 points`.
 fn format_points_with_unit(value: f64) -> String {
-    let words = format_points(value);
-    let plural = if words == "1" { "" } else { "s" };
-    format!("{words} point{plural}")
+    let number = format_points(value);
+    let plural = if number == "1" { "" } else { "s" };
+    format!("{number} point{plural}")
 }
 
 /// Describes what the choice of rule books means.
@@ -258,9 +258,9 @@ fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style:
         "\n{note}: {scene} has {plural} that round-off may change; by the original's rules correct programs may fail\n"
     );
     for decision in found.iter().take(MAX_LISTED) {
-        let word = if decision.collides { "collide" } else { "do not collide" };
+        let verb = if decision.collides { "collide" } else { "do not collide" };
         let (pair, pass) = (PairText(decision.pair), PassText(decision.pass));
-        let _ = writeln!(text, "  step {}: {pair} {word} ({pass})", decision.step);
+        let _ = writeln!(text, "  step {}: {pair} {verb} ({pass})", decision.step);
     }
     if found.len() > MAX_LISTED {
         let _ = writeln!(text, "  and {} more", found.len() - MAX_LISTED);

@@ -12,17 +12,17 @@ use anyhow::{Context, Result, anyhow, bail};
 /// # Errors
 ///
 /// Fails if the text is not such a pair.
-pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
-    let mut points = word.split(':').collect::<Vec<_>>();
-    let word = points.remove(0);
-    let kind = parse_kind(word)?;
+pub(in crate::cli) fn parse_motion(text: &str, radii: Option<&str>) -> Result<PairMotion> {
+    let mut points = text.split(':').collect::<Vec<_>>();
+    let kind_name = points.remove(0);
+    let kind = parse_kind(kind_name)?;
     let moving = |index: usize| parse_moving(points[index]);
     let fixed = |index: usize| parse_vector(points[index]);
     let expect = |count: usize, what: &str| {
         if points.len() == count {
             return Ok(());
         }
-        bail!("{word} takes {count} points ({what}), not {}", points.len())
+        bail!("{kind_name} takes {count} points ({what}), not {}", points.len())
     };
     let radii = || radii.context("the radii are missing: add --radii, as in --radii 1,0.5");
     Ok(match kind {
@@ -53,8 +53,8 @@ pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<Pa
 /// # Errors
 ///
 /// Fails if the scene has no such pair, or detection never checks it.
-pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
-    let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
+pub(in crate::cli) fn find_pair(argument: &str, scene: &Scene) -> Result<Pair> {
+    let (kind, indices) = argument.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
     let kind = parse_kind(kind)?;
     let (first, second) = indices.split_once(',').context("two indices are needed, as in pe:3,1")?;
     let index = |text: &str, count: usize, what: &str| -> Result<u32> {
@@ -89,12 +89,12 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     }
 }
 
-fn parse_kind(word: &str) -> Result<PairKind> {
-    PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
+fn parse_kind(text: &str) -> Result<PairKind> {
+    PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&text)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
-        let suggestion = suggestions::suggest(word, names);
+        let suggestion = suggestions::suggest(text, names);
         format!(
-            "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
+            "`{text}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
              half-plane){suggestion}"
         )
     })
@@ -105,22 +105,22 @@ fn parse_kind(word: &str) -> Result<PairKind> {
 /// # Errors
 ///
 /// Fails if the text has none of these forms.
-fn parse_moving(word: &str) -> Result<PointMotion> {
-    if let Some((start, end)) = word.split_once("..") {
+fn parse_moving(text: &str) -> Result<PointMotion> {
+    if let Some((start, end)) = text.split_once("..") {
         // The displacement is the difference of both ends, computed as in the course's code.
         let (start, end) = (parse_vector(start)?, parse_vector(end)?);
         return Ok(PointMotion { start, shift: end - start });
     }
     // A plus sign may also belong to a number or to its exponent, as in `1e+3,+2+4,1`.
     let separates = |&(index, _): &(usize, char)| {
-        let before = word[..index].trim_end();
+        let before = text[..index].trim_end();
         before.contains(',') && before.ends_with(|c: char| c.is_ascii_digit() || c == '.')
     };
-    match word.char_indices().filter(|&(_, c)| c == '+').find(separates) {
+    match text.char_indices().filter(|&(_, c)| c == '+').find(separates) {
         Some((index, _)) => {
-            Ok(PointMotion { start: parse_vector(&word[..index])?, shift: parse_vector(&word[index + 1..])? })
+            Ok(PointMotion { start: parse_vector(&text[..index])?, shift: parse_vector(&text[index + 1..])? })
         }
-        None => Ok(PointMotion { start: parse_vector(word)?, shift: Vec2::zeros() }),
+        None => Ok(PointMotion { start: parse_vector(text)?, shift: Vec2::zeros() }),
     }
 }
 
@@ -129,15 +129,15 @@ fn parse_moving(word: &str) -> Result<PointMotion> {
 /// # Errors
 ///
 /// Fails if the text is not a point with finite coordinates.
-fn parse_vector(word: &str) -> Result<Vec2> {
-    let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
-    let (x, y) = word.split_once(',').with_context(advice)?;
+fn parse_vector(text: &str) -> Result<Vec2> {
+    let advice = || format!("`{text}` is not a point; write X,Y as in 3,-1.5");
+    let (x, y) = text.split_once(',').with_context(advice)?;
     Ok(Vec2::new(parse_number(x).with_context(advice)?, parse_number(y).with_context(advice)?))
 }
 
-fn parse_radii(word: &str) -> Result<[f64; 2]> {
-    let advice = || format!("`{word}` is not a pair of radii; write R,R as in 1,0.5");
-    let (first, second) = word.split_once(',').with_context(advice)?;
+fn parse_radii(argument: &str) -> Result<[f64; 2]> {
+    let advice = || format!("`{argument}` is not a pair of radii; write R,R as in 1,0.5");
+    let (first, second) = argument.split_once(',').with_context(advice)?;
     let radius = |text| parse_number(text).and_then(require_nonnegative).with_context(advice);
     Ok([radius(first)?, radius(second)?])
 }

@@ -24,7 +24,7 @@ fn main() -> anyhow::Result<()> {
     let mut summary: BTreeMap<(&str, String, String), u32> = BTreeMap::new();
     for (row, judged) in rows.iter().zip(&judged) {
         let Some((overall, fair)) = judged else { continue };
-        let [parity, verdict] = [format!("{overall:?}"), format!("{:?}", fair.verdict)].map(|word| word.to_lowercase());
+        let [parity, verdict] = [format!("{overall:?}"), format!("{:?}", fair.verdict)].map(|name| name.to_lowercase());
         anyhow::ensure!(parity == row.overall, "{} {}: parity says {parity}", row.submission, row.scene);
         let differ = (parity == "passed") != (verdict == "accepted");
         if all || differ || (row.kind == "a" && verdict != "accepted") {

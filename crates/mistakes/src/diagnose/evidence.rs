@@ -53,14 +53,14 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
             return None;
         }
         let mut allowed = alternative_statements(explanation);
-        allowed.retain(|word, _| !is_refuted(word));
+        allowed.retain(|statement, _| !is_refuted(statement));
         let mut same_as: Vec<String> = explanation.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
         let is_reported = allowed.contains_key(&explanation.statement());
         let explanation = match same_as.iter().position(|key| find(key).is_some()) {
             _ if is_reported => Explanation { same_as, ..explanation.clone() },
             Some(place) => explain_by_row(explanation, find(&same_as.remove(place))?, same_as),
             None => {
-                let row = allowed.keys().find_map(|word| find(word))?;
+                let row = allowed.keys().find_map(|statement| find(statement))?;
                 explain_by_row(explanation, row, same_as)
             }
         };
@@ -112,23 +112,23 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         for (index, symptom) in
             trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_about_program())
         {
-            let statement = symptom.explanation.statement();
-            for word in symptom.allowed_statements.keys() {
-                let evidence = all.entry(word.as_str()).or_default();
+            let own_statement = symptom.explanation.statement();
+            for statement in symptom.allowed_statements.keys() {
+                let evidence = all.entry(statement.as_str()).or_default();
                 evidence.symptoms.insert((number, index));
-                evidence.leading_traces += usize::from(index == 0 && *word == statement);
+                evidence.leading_traces += usize::from(index == 0 && *statement == own_statement);
                 // If several explanations have the same statement, the most detailed one is used.
                 let rank_of =
                     |explanation: &Explanation| (explanation.is_exhaustive(), !explanation.details.is_empty());
                 let says_more = |reported: &Explanation| rank_of(reported) < rank_of(&symptom.explanation);
-                if *word == statement && evidence.reported.is_none_or(says_more) {
+                if *statement == own_statement && evidence.reported.is_none_or(says_more) {
                     evidence.reported = Some(&symptom.explanation);
                 }
             }
         }
     }
-    for (word, evidence) in &mut all {
-        let row = find(word);
+    for (statement, evidence) in &mut all {
+        let row = find(statement);
         let is_named = |reported: &Explanation| {
             matches!(
                 &reported.topic,
@@ -144,8 +144,8 @@ fn collect_evidence(traces: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             let has_key = |key: &str| trace.symptoms.iter().any(|symptom| symptom.explanation.key == key);
             evidence.related_traces +=
                 usize::from(reported.is_some_and(|reported| reported.names_stage() && has_key(&reported.key)));
-            evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
-            if trace.allows_statement(word) {
+            evidence.complete_traces += usize::from(trace.allows_complete_statement(statement));
+            if trace.allows_statement(statement) {
                 evidence.traces += 1;
             } else if reported.or(as_told.as_ref()).is_some_and(|reported| {
                 trace.symptoms.iter().any(|symptom| contradicts(&symptom.explanation, reported))
@@ -176,25 +176,25 @@ fn contradicts(one: &Explanation, reported: &Explanation) -> bool {
 /// one. Returns `None` if no mistake is likely.
 pub(super) fn find_likeliest(traces: &[OpenTrace]) -> Option<Explanation> {
     let all = collect_evidence(traces);
-    let is_known = |word: &str| find(word).is_some();
-    let is_likely = |(word, support): &(&&str, &Support<'_>)| {
-        !support.is_denied() && (support.reported.is_some() || is_known(word))
+    let is_known = |statement: &str| find(statement).is_some();
+    let is_likely = |(statement, support): &(&&str, &Support<'_>)| {
+        !support.is_denied() && (support.reported.is_some() || is_known(statement))
     };
-    let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
-        let known_order = is_known(word).cmp(&is_known(other));
+    let (&statement, best) = all.iter().filter(is_likely).max_by(|(statement, a), (other, b)| {
+        let known_order = is_known(statement).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
         a.weight().cmp(&b.weight()).then(known_order).then(a.leading_traces.cmp(&b.leading_traces)).then(order)
     })?;
     // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
-        **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
+        **other != statement && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
     let mut rivals: Vec<(&&str, &Support<'_>)> = all.iter().filter(is_rival).collect();
     rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.leading_traces));
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
     let Some(reported) = best.reported else {
         let &(trace, index) = best.symptoms.first()?;
-        return Some(explain_by_row(&traces[trace].symptoms[index].explanation, find(word)?, same_as));
+        return Some(explain_by_row(&traces[trace].symptoms[index].explanation, find(statement)?, same_as));
     };
     Some(Explanation { same_as, ..merge_explanations(reported, traces) })
 }
@@ -226,8 +226,8 @@ fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanati
     if let ([subject], PolynomialEvidence::Guess(guess)) = (&subjects[..], found) {
         let forms = alternative_forms(&reported.details);
         let is_allowed = |form: &Vec<PolynomialDetail>| {
-            let word = claim_of_form(*subject, guess, form);
-            agreeing.iter().all(|symptom| symptom.allowed_statements.contains_key(&word))
+            let claim = claim_of_form(*subject, guess, form);
+            agreeing.iter().all(|symptom| symptom.allowed_statements.contains_key(&claim))
         };
         let mut keep = forms.iter().map(is_allowed);
         reported.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));

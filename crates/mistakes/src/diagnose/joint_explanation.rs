@@ -279,9 +279,10 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
 /// Drops explanations that name a stage, if one of the traces is explained by a mistake that is visible only in states.
 /// The faults of stages may be consequences of this mistake.
 fn drop_consequences(traces: &mut Vec<OpenTrace>) {
-    let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
+    let is_state_mistake =
+        |statement: &String| find(statement).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| {
-        symptom.allowed_statements.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word))
+        symptom.allowed_statements.iter().any(|(statement, is_whole)| *is_whole && is_state_mistake(statement))
     };
     if traces.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
         traces.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.names_stage()));
@@ -320,7 +321,7 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let has_order = all().any(Explanation::is_about_pairs);
     for trace in traces.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
-            symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));
+            symptom.allowed_statements.retain(|statement, _| !weak.contains(&statement.as_str()));
             let one = &symptom.explanation;
             let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
             !(is_weak || (has_details && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)

@@ -52,15 +52,15 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     }
     // A statement may explain one of several polynomials. It explains all of them only if it is a known mistake, or a
     // guess that does not depend on the polynomial.
-    let words_by_subject = one.claims_by_subject().into_values().map(|claims| {
-        let words = claims.into_iter().map(|(guess, claim)| {
+    let statements_by_subject = one.claims_by_subject().into_values().map(|claims| {
+        let statements = claims.into_iter().map(|(guess, claim)| {
             let concerns_all = find(guess).is_some() || claim.ends_with('/');
             if concerns_all { guess } else { claim }
         });
-        words.map(str::to_owned).collect::<BTreeSet<String>>()
+        statements.map(str::to_owned).collect::<BTreeSet<String>>()
     });
-    let words_by_subject = words_by_subject.reduce(|one, other| one.intersection(&other).cloned().collect());
-    all.extend(words_by_subject.into_iter().flatten().map(|word| (word, true)));
+    let statements_by_subject = statements_by_subject.reduce(|one, other| one.intersection(&other).cloned().collect());
+    all.extend(statements_by_subject.into_iter().flatten().map(|statement| (statement, true)));
     all
 }
 

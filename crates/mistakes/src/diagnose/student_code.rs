@@ -26,8 +26,8 @@ pub(super) fn changed_term(row: &Row) -> Term {
     if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
         return edit.term;
     }
-    let mut words = row.id.split('-');
-    match (row.area, words.next().unwrap_or_default(), words.next().unwrap_or_default()) {
+    let mut parts = row.id.split('-');
+    match (row.area, parts.next().unwrap_or_default(), parts.next().unwrap_or_default()) {
         (Area::Forces, "drag", _) => Term::Drag,
         (Area::Forces, "gravitation", _) => Term::Gravitation,
         (Area::Forces, ..) => Term::Spring,

@@ -69,10 +69,10 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Reports a problem, whose text is created only if the report has room for it.
-    fn report_problem(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
+    fn report_problem(&mut self, severity: Severity, name: &str, message_and_help: impl FnOnce() -> (String, String)) {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         self.report.add(severity, || {
-            let (message, help) = words();
+            let (message, help) = message_and_help();
             Problem::from_element(tag.rule.name, &span, format!("`{name}` of {} {message}", describe_tag(tag, number)))
                 .with_attribute(name)
                 .with_help(help)

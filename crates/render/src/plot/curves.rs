@@ -94,18 +94,18 @@ impl PolynomialPlot<'_> {
 
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
-        let mut words: Vec<String> = self
+        let mut parts: Vec<String> = self
             .curves
             .iter()
             .map(|curve| format!("{} is positive {}", curve.name, clip_to_step(curve.positive)))
             .collect();
         if let Some(common) = self.common {
-            words.push(format!("all polynomials are positive {}", clip_to_step(common)));
+            parts.push(format!("all polynomials are positive {}", clip_to_step(common)));
         }
         if let Some(time) = self.impact {
-            words.push(format!("the time of impact is {}", format_short(time)));
+            parts.push(format!("the time of impact is {}", format_short(time)));
         }
-        words.join("; ") + ". Each curve is scaled to its own largest value on the step."
+        parts.join("; ") + ". Each curve is scaled to its own largest value on the step."
     }
 }
 

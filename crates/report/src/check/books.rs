@@ -13,7 +13,7 @@ pub(crate) type BookVerdict = (&'static str, TextStyle, &'static str, String);
 pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let outcome = check.outcome;
     let judgment = outcome.fair.as_deref()?;
-    let (look, word) = match outcome.parity.overall {
+    let (look, verdict) = match outcome.parity.overall {
         Overall::Passed => (TextStyle::Right, "passed"),
         Overall::Failed => (TextStyle::Wrong, "failed"),
         Overall::None => (TextStyle::Notice, "no verdict"),
@@ -23,17 +23,17 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     found.extend((total > 0).then(|| format_count(total, "finding")));
     let follow = consequences::count_consequences(outcome);
     found.extend((follow > 0).then(|| format!("among them {}", consequences::describe_consequences(follow))));
-    let parity = ("the original's rules", look, word, found.join(", "));
-    let (look, word) = fair::verdict(judgment);
-    Some([parity, ("the fair rules", look, word, fair::summarize(judgment, outcome))])
+    let parity = ("the original's rules", look, verdict, found.join(", "));
+    let (look, verdict) = fair::verdict(judgment);
+    Some([parity, ("the fair rules", look, verdict, fair::summarize(judgment, outcome))])
 }
 
 /// Renders the section about the rule books; `None` if the headline already contains the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = format!("{}\n", style.paint(TextStyle::Strong, "Rule books"));
-    for (name, look, word, grounds) in verdicts(check)? {
+    for (name, look, verdict, grounds) in verdicts(check)? {
         let grounds = if grounds.is_empty() { grounds } else { format!(": {grounds}") };
-        text += &format!("  {name}: {}{grounds}\n", style.paint(look, word));
+        text += &format!("  {name}: {}{grounds}\n", style.paint(look, verdict));
     }
     if let Some(cause) = find_cause(check.outcome) {
         text += &format!("  {} {cause}\n", style.paint(TextStyle::Notice, "They differ:"));

@@ -85,8 +85,8 @@ impl ComparedValues {
         }
         for Row { name, expected, actual, differs } in &self.rows {
             let mark = |text: String| if *differs { Cell::with_style(TextStyle::Wrong, text) } else { text.into() };
-            let word = if *differs { "<- differs" } else { "" };
-            table.add_row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(word.to_owned())]);
+            let mark_text = if *differs { "<- differs" } else { "" };
+            table.add_row([(*name).into(), expected.exact().into(), mark(actual.exact()), mark(mark_text.to_owned())]);
         }
         lines(&self.remarks_before)
             + &table.render(style)

@@ -23,12 +23,12 @@ pub fn detect_file_kind(start: &[u8]) -> Option<&'static str> {
         return Some(what);
     }
     let is_text = |byte: &u8| matches!(byte, b'\t' | b'\n' | b'\r' | 0x1b | 0x20..=0x7e);
-    let words = std::str::from_utf8(start).map_or_else(|error| &start[..error.valid_up_to()], str::as_bytes);
-    if words.len() + 3 < start.len() || !words.iter().all(|byte| is_text(byte) || *byte >= 0x80) {
+    let text = std::str::from_utf8(start).map_or_else(|error| &start[..error.valid_up_to()], str::as_bytes);
+    if text.len() + 3 < start.len() || !text.iter().all(|byte| is_text(byte) || *byte >= 0x80) {
         return None;
     }
-    let words = words.trim_ascii_start().to_ascii_lowercase();
-    let begins = |marks: &[&[u8]]| marks.iter().any(|mark| words.starts_with(mark));
+    let text = text.trim_ascii_start().to_ascii_lowercase();
+    let begins = |marks: &[&[u8]]| marks.iter().any(|mark| text.starts_with(mark));
     Some(if begins(&[b"<!doctype html", b"<html"]) {
         "looks like HTML"
     } else if begins(&[b"<?xml", b"<scene"]) {

@@ -108,9 +108,9 @@ impl Check<'_> {
             let stop = self.outcome.stop_by(self.book()).map(|stop| describe_stop(&stop, self.outcome));
             let first = first_finding::find_first(self).map(|first| first.to_string());
             let likely = explain::render_sentence(self.explanations).filter(|_| !first_finding::is_other_scene(self));
-            let words: Vec<String> =
+            let parts: Vec<String> =
                 [Some(text::render_headline(self)), stop, first, likely].into_iter().flatten().collect();
-            text += &render_annotation("error", &title, &words.join("; "));
+            text += &render_annotation("error", &title, &parts.join("; "));
         }
         if let Some(cause) = find_cause(self.outcome) {
             text += &render_annotation("warning", &title, &format!("the rule books differ: {cause}"));

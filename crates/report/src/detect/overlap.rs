@@ -38,7 +38,7 @@ impl Overlap<'_> {
     /// Renders the report without its title. `number` formats numbers.
     pub(crate) fn render_body(&self, number: FormatFn, style: Style) -> String {
         let study = self.study;
-        let heading = |words: &str| format!("\n{}\n", style.paint(TextStyle::Strong, words));
+        let heading = |title: &str| format!("\n{}\n", style.paint(TextStyle::Strong, title));
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
         let mut text = "  simple collisions use the positions and velocities at the end of the step\n".to_owned();
         text += &render_motion(&study.motion, number, style);
@@ -63,19 +63,19 @@ impl Overlap<'_> {
             negation_unless(approach)
         );
         text += &heading("Decision");
-        let (look, words) = match study.collides {
+        let (look, decision) = match study.collides {
             true => (TextStyle::Notice, "they collide, and the response changes their velocities"),
             false => (TextStyle::Right, "no collision: objects collide if they overlap and approach each other"),
         };
-        text += &format!("  {}\n", style.paint(look, words));
+        text += &format!("  {}\n", style.paint(look, decision));
         text += match study.is_certain {
             true => "  certain: round-off can't change this\n",
             false => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(logged) = self.logged {
             let look = if logged == study.collides { TextStyle::Right } else { TextStyle::Wrong };
-            let words = format!("the trace has {} collision of this pair", if logged { "a" } else { "no" });
-            text += &format!("  {}\n", style.paint(look, &words));
+            let line = format!("the trace has {} collision of this pair", if logged { "a" } else { "no" });
+            text += &format!("  {}\n", style.paint(look, &line));
         }
         text
     }

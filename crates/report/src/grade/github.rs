@@ -23,8 +23,8 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
         }
         if let Some(build) = grade.failed_build() {
             let title = format!("{}: {}", grade.submission, words::build(&build.end));
-            let words: String = clean_output(&build.output).chars().take(4000).collect();
-            text += &join_annotation("error", &title, words.lines());
+            let output: String = clean_output(&build.output).chars().take(4000).collect();
+            text += &join_annotation("error", &title, output.lines());
         }
         // GitHub shows only ten annotations, so the most important ones come first and nothing is repeated.
         let head = head_lines(grade);
@@ -36,12 +36,12 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
         for scene in wrong {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = format!("{}: {} {}", grade.submission, scene.scene, scene.verdict);
-            let words: Vec<String> = std::iter::once(words::summarize(scene)).chain(scene_sentence(scene)).collect();
-            text += &render_annotation(level, &title, &words.join("; "));
+            let parts: Vec<String> = std::iter::once(words::summarize(scene)).chain(scene_sentence(scene)).collect();
+            text += &render_annotation(level, &title, &parts.join("; "));
         }
         for scene in grade.scenes() {
-            let Some(words) = describe_difference(scene) else { continue };
-            text += &render_annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
+            let Some(difference) = describe_difference(scene) else { continue };
+            text += &render_annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &difference);
         }
     }
     text

@@ -75,7 +75,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             });
         }
         if let Some(speed) = &group.speed {
-            let words = match tells_all || group.visibility == Visibility::Hidden {
+            let output = match tells_all || group.visibility == Visibility::Hidden {
                 true => describe_speed(speed),
                 false => describe_speed(&SpeedGrade { source: SpeedSource::Withheld, ..speed.clone() }),
             };
@@ -85,7 +85,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 status: if speed.points == Some(speed.marking.points) { "passed" } else { "failed" },
                 name: format!("speed ({})", strip_control_characters(&group.name)),
                 number: format!("{}.{}", g + 1, group.scenes.len() + 1),
-                output: strip_control_characters(&words),
+                output: strip_control_characters(&output),
                 tags: vec!["speed".to_owned()],
                 visibility: group.visibility,
             });

@@ -33,9 +33,9 @@ pub(crate) fn render(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> Stri
             }
             for scene in &group.scenes {
                 // A JUnit test case has room only for its result and the program's output.
-                if let Some(words) = describe_difference(scene) {
+                if let Some(difference) = describe_difference(scene) {
                     let name = format!("rules_differ.{}", strip_control_characters(&scene.scene));
-                    suite.add_property(quick_junit::Property::new(name, words));
+                    suite.add_property(quick_junit::Property::new(name, difference));
                 }
                 suite.add_test_case(test_case(grade, scene));
             }

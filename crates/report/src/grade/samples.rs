@@ -14,8 +14,8 @@ use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
 /// Returns a reason that consists of the given text, to test how reports show untrusted text.
-pub(crate) fn reason_with_text(words: &str) -> Reason {
-    Reason::Failed(Failure::Machine(words.to_owned()))
+pub(crate) fn reason_with_text(text: &str) -> Reason {
+    Reason::Failed(Failure::Machine(text.to_owned()))
 }
 
 fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {

@@ -11,8 +11,8 @@ use fosssim_findings::{Grade, SkippedEntry};
 /// list of skipped entries.
 pub fn add_warnings(grades: &mut [Grade], skipped_entries: &[SkippedEntry]) {
     if let [grade] = grades {
-        let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.reason);
-        grade.warnings.extend(skipped_entries.iter().map(words));
+        let warning = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.reason);
+        grade.warnings.extend(skipped_entries.iter().map(warning));
     }
 }
 

@@ -164,11 +164,11 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
 
 /// Describes the decision that follows from the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
-    let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
+    let decision = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all polynomials are positive from time {} on: a collision", render_number(time)),
         None => "at no time in the step are all polynomials positive: no collision".to_owned(),
     };
-    format!("<p>According to your polynomials, {says}.</p>\n")
+    format!("<p>According to your polynomials, {decision}.</p>\n")
 }
 
 /// Draws the expected and the actual curve of one polynomial in the same plot.

@@ -43,14 +43,14 @@ impl Card {
     }
 
     /// Returns a card that contains only text.
-    pub fn from_words(words: &str) -> Self {
-        Self { html: format!("<p>{}</p>\n", super::markup::escape(words)), ..Self::default() }
+    pub fn from_text(text: &str) -> Self {
+        Self { html: format!("<p>{}</p>\n", super::markup::escape(text)), ..Self::default() }
     }
 
     /// Returns the card with a remark above its content.
     #[must_use]
-    pub fn with_remark(self, words: &str) -> Self {
-        Self { html: Self::from_words(words).html + &self.html, ..self }
+    pub fn with_remark(self, remark: &str) -> Self {
+        Self { html: Self::from_text(remark).html + &self.html, ..self }
     }
 
     /// Returns the card in the form in which it is stored.

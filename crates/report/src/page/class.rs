@@ -212,19 +212,19 @@ fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     for (number, grade) in grades.iter().enumerate() {
         for cause in grade.scenes().filter_map(|scene| scene.difference_cause) {
             let verdict = if cause.is_original_too_strict() { "rejects" } else { "accepts" };
-            let words = format!("The original {verdict} them: {cause}");
-            *found.entry(words).or_default().entry(number).or_default() += 1;
+            let reason = format!("The original {verdict} them: {cause}");
+            *found.entry(reason).or_default().entry(number).or_default() += 1;
         }
     }
-    let mut found: Vec<_> = found.into_iter().map(|(words, members)| (words, Vec::from_iter(members))).collect();
+    let mut found: Vec<_> = found.into_iter().map(|(reason, members)| (reason, Vec::from_iter(members))).collect();
     found.sort_by_key(|(_, members)| std::cmp::Reverse(members.len()));
     found
 }
 
 /// Cuts a long text, between two words if possible.
-fn shorten(words: &str) -> String {
-    let Some((end, _)) = words.char_indices().nth(MAX_SUMMARY_LENGTH) else { return words.to_owned() };
-    let cut = &words[..end];
+fn shorten(text: &str) -> String {
+    let Some((end, _)) = text.char_indices().nth(MAX_SUMMARY_LENGTH) else { return text.to_owned() };
+    let cut = &text[..end];
     format!("{} ...", cut.rsplit_once(' ').map_or(cut, |(whole, _)| whole))
 }
 

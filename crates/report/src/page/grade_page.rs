@@ -167,8 +167,8 @@ fn break_at_slashes(name: &str) -> String {
 
 /// Describes as HTML what the scenes in which a program fails have in common.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
-    let words = escape(&to_one_line(&words::describe_located(found)));
-    format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
+    let description = escape(&to_one_line(&words::describe_located(found)));
+    format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{description}</p></div>\n")
 }
 
 /// Describes which rule book gives the verdict.

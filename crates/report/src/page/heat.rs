@@ -6,9 +6,9 @@ use std::fmt::Write;
 /// wrong, `e` for a scene without a trace that can be judged, and `n` for a scene that was not run.
 pub(super) fn render_cells(letters: &str) -> String {
     let scenes = letters.replace('|', "");
-    let words = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
+    let label = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
     let mut svg = format!(
-        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{words}\">",
+        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{label}\">",
         scenes.len().max(1)
     );
     for kind in ["w", "e", "n"] {

@@ -29,10 +29,10 @@ struct SmallestContent<'a> {
 pub(super) fn list_parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
     let parts = [Some(small.xml.as_str()), small.difference.as_deref(), small.calculation.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
-    named.filter_map(|(name, words)| Some((name, words?))).collect()
+    named.filter_map(|(name, text)| Some((name, text?))).collect()
 }
 
 /// Renders preformatted text below a label.
-pub(super) fn format_pre(label: &str, words: &str) -> String {
-    format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", escape(words.trim_end()))
+pub(super) fn format_pre(label: &str, text: &str) -> String {
+    format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", escape(text.trim_end()))
 }

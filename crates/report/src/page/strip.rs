@@ -13,7 +13,7 @@ const MAX_COLUMNS: usize = 480;
 /// Renders the strip, and a text with the number of steps of each kind.
 pub(super) fn render_strip(steps: &[Step]) -> String {
     let count = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
-    let words = format!(
+    let summary = format!(
         "{} right, {} wrong by themselves, {} right but starting from a wrong state{}",
         count(StepClass::Right),
         count(StepClass::Wrong),
@@ -24,8 +24,8 @@ pub(super) fn render_strip(steps: &[Step]) -> String {
         }
     );
     let mut out = format!(
-        "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: \
-         {words}\" preserveAspectRatio=\"none\">"
+        "<p>{summary}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: \
+         {summary}\" preserveAspectRatio=\"none\">"
     );
     let columns = steps.len().min(MAX_COLUMNS);
     let worst = |column: usize| {

@@ -87,12 +87,12 @@ impl Mapping {
     fn parse(line: &[u8]) -> Option<Self> {
         let line = line.strip_suffix(DELETED_SUFFIX)?;
         let start = line.iter().position(|byte| *byte == b'/')?;
-        let mut words = std::str::from_utf8(&line[..start]).ok()?.split_ascii_whitespace();
-        let (from, to) = words.next()?.split_once('-')?;
+        let mut fields = std::str::from_utf8(&line[..start]).ok()?.split_ascii_whitespace();
+        let (from, to) = fields.next()?.split_once('-')?;
         let number = |text: &str| u64::from_str_radix(text, 16).ok();
-        let shared = words.next()?.ends_with('s');
-        let end = number(words.next()?)?.saturating_add(number(to)?.saturating_sub(number(from)?));
-        let inode = words.nth(1)?.parse().ok()?;
+        let shared = fields.next()?.ends_with('s');
+        let end = number(fields.next()?)?.saturating_add(number(to)?.saturating_sub(number(from)?));
+        let inode = fields.nth(1)?.parse().ok()?;
         Some(Self { is_shared: shared, end, inode, name: line[start..].to_vec() })
     }
 }

@@ -116,11 +116,11 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let mut entry_files = group.open_entry_files()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {
-        let word = entry_files.iter_mut().try_for_each(|entry_file| entry_file.write_all(b"0"));
-        let word = word.map_err(|error| error.to_string());
+        let result = entry_files.iter_mut().try_for_each(|entry_file| entry_file.write_all(b"0"));
+        let result = result.map_err(|error| error.to_string());
         // If the prober has ended, sending fails, which does not matter. If the prober does not kill this process, the
         // process ends together with its parent, which is the prober.
-        let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
+        let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &result.err()));
         loop {
             std::thread::sleep(Duration::from_secs(1));
         }

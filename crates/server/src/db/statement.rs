@@ -63,8 +63,8 @@ pub(super) fn render_statement(statement: &str, dialect: Dialect) -> String {
         ],
     };
     let mut text = statement.to_owned();
-    for (word, meaning) in substitutes {
-        text = text.replace(word, meaning);
+    for (placeholder, meaning) in substitutes {
+        text = text.replace(placeholder, meaning);
     }
     if dialect == Dialect::Sqlite {
         return text;

@@ -78,9 +78,10 @@ impl PlatformSettings {
     ///
     /// Fails with a message about the first invalid value.
     pub fn check(&self, allows_http: bool) -> Result<(), Problem> {
-        let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
+        let is_identifier =
+            |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
-            ensure(is_word(text), Problem::invalid(format!("{name} must be 1 to 255 characters long")))?;
+            ensure(is_identifier(text), Problem::invalid(format!("{name} must be 1 to 255 characters long")))?;
         }
         for (name, text) in
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
@@ -90,12 +91,14 @@ impl PlatformSettings {
                 Problem::invalid(format!("{name} must be a URL that begins with https://")),
             )?;
         }
-        if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))
+        if self.deployments.is_empty()
+            || self.deployments.len() > 1000
+            || !self.deployments.iter().all(|d| is_identifier(d))
         {
             return Err(Problem::invalid("deployments must be a list of at least one deployment ID"));
         }
         ensure(
-            self.audience.as_deref().is_none_or(is_word),
+            self.audience.as_deref().is_none_or(is_identifier),
             Problem::invalid("audience must be 1 to 255 characters long"),
         )?;
         let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| origin(&url) == *host);

@@ -30,7 +30,7 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let likely = || grade.likely_mistakes.first().map(|mistake| &mistake.text);
     // No mistake explains a program that crashed or was stopped; the first such scene describes how it ended.
     let has_ended = |scene: &&&SceneInFile| scene.code == grade.code && !["AC", "WA"].contains(&scene.code.as_str());
-    let ending = || scenes.iter().find(has_ended).map(|scene| &scene.summary).filter(|words| !words.is_empty());
+    let ending = || scenes.iter().find(has_ended).map(|scene| &scene.summary).filter(|summary| !summary.is_empty());
     if let Some(reason) = grade.unfit.as_ref().or_else(likely).or_else(ending) {
         summary = format!("{summary}; {reason}");
     }

@@ -110,19 +110,19 @@ impl Ffmpeg {
             .spawn()
             .context("ffmpeg can't be started")?;
         let (pipe, errors) = (child.stdin.take(), child.stderr.take());
-        let words = errors.map(|mut errors| {
+        let messages = errors.map(|mut errors| {
             thread::spawn(move || {
-                let mut words = Vec::new();
-                let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut words);
+                let mut text = Vec::new();
+                let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut text);
                 // The rest is read as well, so that the program is not blocked.
                 let _ = io::copy(&mut errors, &mut io::sink());
-                String::from_utf8_lossy(&words).trim().to_owned()
+                String::from_utf8_lossy(&text).trim().to_owned()
             })
         });
         let watch = Arc::new(EncoderWatch::default());
         let child = Arc::new(Mutex::new(child));
         kill_when_stuck(&child, &watch);
-        Ok(Self { child, pipe, messages: words, encoder_watch: watch, output: Some(output) })
+        Ok(Self { child, pipe, messages, encoder_watch: watch, output: Some(output) })
     }
 
     /// Sends a picture to the program.
@@ -154,12 +154,12 @@ impl Ffmpeg {
             }
         };
         self.encoder_watch.is_finished.store(true, Ordering::Relaxed);
-        let words = self.messages.take().and_then(|words| words.join().ok()).unwrap_or_default();
+        let message = self.messages.take().and_then(|reader| reader.join().ok()).unwrap_or_default();
         if self.encoder_watch.is_given_up.load(Ordering::Relaxed) {
             bail!("ffmpeg read no frame for {} seconds and was killed", STUCK_TIME.as_secs());
         }
         if !status.success() {
-            bail!("ffmpeg failed ({status}): {words}");
+            bail!("ffmpeg failed ({status}): {message}");
         }
         drawn?;
         self.output.take().map_or(Ok(()), Output::finish)

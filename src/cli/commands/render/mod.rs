@@ -60,12 +60,12 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let mut reel = DrawableMotion::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, RenderTarget::Stream(_)) && arguments.output == Path::new("-");
     let output = input::printable_name(&arguments.output);
-    let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
+    let drawn = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
         true => error.context(format!("cannot write {output}")),
         false => error,
     })?;
     stopped.iter().for_each(console::print_error);
-    let summary = format!("{words} into {output}\n");
+    let summary = format!("{drawn} into {output}\n");
     if to_stdout {
         console::print_error(&summary);
     } else {

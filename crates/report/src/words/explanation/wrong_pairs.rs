@@ -21,11 +21,11 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
             continue;
         }
         let traits = pair_traits(pairs, times);
-        let words =
+        let descriptions =
             |traits: &[PairTrait]| traits.iter().map(|pair_trait| pair_trait.description.clone()).collect::<Vec<_>>();
         let share = describe_share(pairs, times);
         let is_same = |other: &&mut PairFault<'_>| {
-            other.times == times && other.share == share && words(&other.traits) == words(&traits)
+            other.times == times && other.share == share && descriptions(&other.traits) == descriptions(&traits)
         };
         match all.iter_mut().find(is_same) {
             Some(other) => other.kinds.push(pairs),

@@ -58,7 +58,7 @@ impl App {
             Problem::too_many("too many people are signing in from your IP address"),
         )?;
         // All windows of a browser share one secret.
-        let is_secret = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+        let is_secret = |value: &&String| value.len() == 64 && value.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_secret).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
@@ -128,9 +128,9 @@ impl PendingSignIn {
 
 /// Reads a signed state. Returns the sign-in, and the digest of the browser's secret; `None` if the signature is wrong.
 fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
-    let (words, tag) = state.rsplit_once('.')?;
-    hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
-    let mut parts = words.split('.');
+    let (content, tag) = state.rsplit_once('.')?;
+    hmac::verify(key, content.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
+    let mut parts = content.split('.');
     let (at, expires_at) = (parts.next()?.to_owned(), parts.next()?.parse().ok()?);
     let (browser, account) = (parts.next()?.to_owned(), parts.next()?.parse().ok()?);
     let to = String::from_utf8(URL_SAFE_NO_PAD.decode(parts.next()?).ok()?).ok()?;

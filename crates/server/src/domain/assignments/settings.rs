@@ -103,17 +103,23 @@ pub(crate) fn time_schema() -> Schema {
     let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
     let date =
         ObjectBuilder::new().schema_type(Type::String).format(Some(date)).pattern(Some("^(199|2[0-9]{2})[0-9]-"));
-    let words = "The due date of students, in milliseconds since 1970, or as a date with its time zone.";
+    let description = "The due date of students, in milliseconds since 1970, or as a date with its time zone.";
     let [early, late] = calendar::MILLISECOND_RANGES;
     let null = ObjectBuilder::new().schema_type(Type::Null);
-    OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
+    OneOfBuilder::new()
+        .item(number(early))
+        .item(number(late))
+        .item(date)
+        .item(null)
+        .description(Some(description))
+        .into()
 }
 
 fn zone_schema() -> Schema {
     let names = ObjectBuilder::new().schema_type(Type::String).enum_values(Some(TZ_VARIANTS.map(Tz::name)));
     let null = ObjectBuilder::new().schema_type(Type::Null);
-    let words = "The time zone in which late days end. Without it, each late day has 24 hours.";
-    OneOfBuilder::new().item(names).item(null).description(Some(words)).into()
+    let description = "The time zone in which late days end. Without it, each late day has 24 hours.";
+    OneOfBuilder::new().item(names).item(null).description(Some(description)).into()
 }
 
 impl Default for Settings {

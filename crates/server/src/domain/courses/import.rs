@@ -46,13 +46,13 @@ fn find_column(heading: &str) -> Option<usize> {
 /// Returns the positions of the four columns according to the headings in the first line; `None` if the line has no
 /// headings.
 fn read_headings(cells: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
-    if cells.iter().all(|word| find_column(word).is_none()) {
+    if cells.iter().all(|heading| find_column(heading).is_none()) {
         return Ok(None);
     }
     let mut columns = [None; COLUMNS.len()];
-    for (index, word) in cells.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
-        if find_column(word).is_some_and(|column| columns[column].replace(index).is_some()) {
-            return Err(Problem::invalid(format!("the column {word} occurs twice")));
+    for (index, heading) in cells.iter().enumerate().filter(|(_, heading)| !heading.is_empty()) {
+        if find_column(heading).is_some_and(|column| columns[column].replace(index).is_some()) {
+            return Err(Problem::invalid(format!("the column {heading} occurs twice")));
         }
     }
     match columns {
@@ -90,7 +90,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             (columns, headings) = (found, cells);
             continue;
         }
-        let is_extra = |(index, word): &(usize, &String)| !word.is_empty() && !columns.contains(&Some(*index));
+        let is_extra = |(index, value): &(usize, &String)| !value.is_empty() && !columns.contains(&Some(*index));
         let extra = cells.iter().enumerate().filter(is_extra);
         // An unknown heading is an error, so that no column is ignored silently.
         let unused: Option<Vec<String>> =

@@ -108,8 +108,8 @@ impl Admin {
             FROM account WHERE disabled_at IS NULL AND login > ?
                AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
             ORDER BY login LIMIT ?";
-        let (words, limit) = (search.trim(), PEOPLE_PER_PAGE + 1);
-        let values = values![after, words.to_lowercase(), words, limit];
+        let (query, limit) = (search.trim(), PEOPLE_PER_PAGE + 1);
+        let values = values![after, query.to_lowercase(), query, limit];
         let mut accounts: Vec<ListedAccount> = transaction.all(statement, values).await?;
         let has_more = accounts.len() as i64 == limit;
         accounts.truncate(PEOPLE_PER_PAGE as usize);

@@ -220,7 +220,7 @@ pub(super) async fn choose_assignment(
 impl NewPlatform {
     fn settings(&self) -> Result<PlatformSettings, Problem> {
         let list = |text: &str| -> Vec<String> {
-            let items = text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty());
+            let items = text.split([' ', ',', '\n', '\r', '\t']).filter(|item| !item.is_empty());
             items.map(str::to_owned).collect()
         };
         let filled = self.fields.iter().map(|(name, text)| (name, text.trim())).filter(|(_, text)| !text.is_empty());

@@ -16,8 +16,8 @@ use axum::{
 /// opens a page of this server, so a cookie with `SameSite=Lax` is sent.
 fn redirect(app: &App, login: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
-    let (name, word) = (provider_cookie(app.is_secure()), &login.browser);
-    let cookie = format!("{name}={word}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
+    let (name, value) = (provider_cookie(app.is_secure()), &login.browser);
+    let cookie = format!("{name}={value}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
     sign_in::with_cookie(&cookie, &login.address)
 }
 

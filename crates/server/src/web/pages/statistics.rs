@@ -65,7 +65,7 @@ impl Statistics {
         let points = Some(shares.len()).filter(|count| *count > 0);
         Self {
             students: standings.len(),
-            section_counts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
+            section_counts: SECTIONS.map(|(name, title)| (name, title, count(name))).to_vec(),
             mean_and_median: points.map(|count| (format_points(mean(count)), format_points(middle(count)))),
             histogram: histogram::render_histogram(shares.iter().map(|share| share / 100.0)),
             mistakes: find_clusters(standings, |row| &row.mistakes),
