@@ -5,6 +5,7 @@ use crate::{
     number::format_count,
     style::{Style, TextStyle},
     table::{Align, Table},
+    words,
 };
 use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
@@ -176,18 +177,33 @@ pub(crate) struct SharedMistake {
     pub(crate) members: Vec<usize>,
 }
 
-/// Returns the likely mistakes, the most frequent first. Each has the submissions that make it.
+/// Returns the likely mistakes, the most frequent first. Each has the submissions that make it, and says only what is
+/// true of all of them: each unwritten stage is an entry, and polynomials that nothing explains are left out, because
+/// they may be wrong for different reasons.
 pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
-        for (mistake, _) in find_likely_mistakes(grade) {
+        let likely = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake);
+        for mistake in likely.filter(|mistake| !mistake.is_unexplained()).flat_map(split_stages) {
             let new = || SharedMistake { mistake: mistake.clone(), members: Vec::new() };
-            found.entry(mistake.statement()).or_insert_with(new).members.push(number);
+            let members = &mut found.entry(words::explanation::describe(&mistake)).or_insert_with(new).members;
+            if members.last() != Some(&number) {
+                members.push(number);
+            }
         }
     }
     let mut sorted: Vec<_> = found.into_values().collect();
     sorted.sort_by_key(|cluster| std::cmp::Reverse(cluster.members.len()));
     sorted
+}
+
+/// Returns one explanation for each stage that a mistake names as unwritten; any other mistake stays as it is.
+fn split_stages(mistake: Explanation) -> Vec<Explanation> {
+    if !mistake.is_unfinished() {
+        return vec![mistake];
+    }
+    let stages = mistake.same_as.iter().cloned();
+    stages.map(|stage| Explanation { same_as: vec![stage], ..mistake.clone() }).collect()
 }
 
 #[cfg(test)]
@@ -207,6 +223,29 @@ mod tests {
             [samples::accepted_grade(), samples::failing_grade(), samples::failed_grade(), samples::stopped_grade()];
         insta::assert_snapshot!(render_class(&grades, 3, Style::Plain));
         assert!(render_class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
+    }
+
+    #[test]
+    fn a_shared_mistake_is_true_of_all_who_make_it() {
+        let grade = |stages: &[&str]| {
+            let mut grade = samples::failing_grade();
+            let of_scene = |key: &&str| Explanation {
+                reproduced: 5,
+                samples: 5,
+                ..Explanation::with_topic(*key, fosssim_findings::explanation::ExplanationTopic::Mistake)
+            };
+            let scene = grade.groups[0].scenes[0].clone();
+            grade.groups[0].scenes = vec![scene; stages.len()];
+            for (scene, key) in grade.groups[0].scenes.iter_mut().zip(stages) {
+                scene.result.explanations = vec![of_scene(key)];
+            }
+            grade
+        };
+        let grades = [grade(&["pp-empty", "ph-empty"]), grade(&["ph-empty", "loop-empty-succeeds"])];
+        let report = render_class(&grades, 9, Style::Plain);
+        let mistakes = report.split_once("Most frequent mistakes\n").expect("a list").1;
+        let first = "  2 submissions   Not written yet: particle-half-plane detection (it logs nothing).\n";
+        assert!(mistakes.starts_with(first) && mistakes.lines().count() == 3, "{report}");
     }
 
     #[test]

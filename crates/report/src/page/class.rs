@@ -16,9 +16,7 @@ use crate::{
     words,
 };
 use askama::Template;
-use fosssim_findings::{
-    CourseNote, Grade, SceneGrade, SkippedEntry, Verdict, explanation::Explanation, smallest_scene::SmallestScene,
-};
+use fosssim_findings::{CourseNote, Grade, SceneGrade, SkippedEntry, Verdict, smallest_scene::SmallestScene};
 use fosssim_mistakes::diagnose::is_named_in;
 use std::collections::BTreeMap;
 
@@ -117,10 +115,7 @@ impl ClassContent<'_> {
     /// mistake explains, and that fail the same scenes for the same reasons, follow.
     fn clusters(&self) -> Vec<Cluster<'_>> {
         let grades = self.class.grades;
-        // Submissions that nothing explains may be wrong for different reasons.
-        let is_shared =
-            |mistake: &SharedMistake| mistake.members.len() > 1 && mistake.mistake.key != Explanation::UNEXPLAINED;
-        let named = self.mistakes.iter().enumerate().filter(|(_, mistake)| is_shared(mistake));
+        let named = self.mistakes.iter().enumerate().filter(|(_, mistake)| mistake.members.len() > 1);
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
             let scene = clearest_scene(first, mistake);
