@@ -46,14 +46,14 @@ fn is_quiet() -> bool {
 /// Otherwise they are on with `CLICOLOR_FORCE`, and on a terminal that shows them (not with `TERM=dumb` or
 /// `CLICOLOR=0`).
 pub(super) fn style() -> Style {
-    let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
+    let has_value = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     let uses_color = match COLOR.get().copied().unwrap_or(ColorChoice::Auto) {
         ColorChoice::Always => true,
         ColorChoice::Never => false,
         ColorChoice::Auto if is_set("NO_COLOR") => false,
-        ColorChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
-        ColorChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
+        ColorChoice::Auto if is_set("CLICOLOR_FORCE") && !has_value("CLICOLOR_FORCE", "0") => true,
+        ColorChoice::Auto => io::stdout().is_terminal() && !has_value("TERM", "dumb") && !has_value("CLICOLOR", "0"),
     };
     match (uses_color, io::stdout().is_terminal() && shows_signs()) {
         (false, _) => Style::Plain,

@@ -19,8 +19,9 @@ impl CourseSuite {
     /// # Errors
     /// Fails if there is no visible group, or if a name cannot be written into a suite.
     pub fn from_plan(plan: &Plan, reader: Audience) -> Result<Self, String> {
-        let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
-        let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
+        let is_shown = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
+        let groups: Vec<&PlannedGroup> =
+            plan.groups.iter().filter(|group| is_shown(group.marking.visibility)).collect();
         if groups.is_empty() {
             return Err("the suite hides all its groups from readers of the page".to_owned());
         }

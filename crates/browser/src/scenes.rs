@@ -55,8 +55,8 @@ pub(crate) fn recognize_scenes(file: u32, host: &dyn PageHost) -> PageAnswer {
     if let Some(error) = fault.get() {
         return Err(format!("cannot read the trace: {error}"));
     }
-    let begins = |name: &&str| library::find_scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
-    let scenes: Vec<_> = library::scene_names().filter(begins).collect();
+    let is_possible_scene = |name: &&str| library::find_scene(name).is_some_and(|xml| may_begin_trace(xml, &start));
+    let scenes: Vec<_> = library::scene_names().filter(is_possible_scene).collect();
     let kind = detect_file_kind(&start[..start.len().min(SNIFFED_BYTES as usize)])
         .or_else(|| (!begins_with_positions(&start)).then_some("begins with numbers that cannot be positions"));
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))

@@ -386,7 +386,7 @@ impl Observer for Inspector<'_> {
             detection.polynomials.iter().for_each(|polynomial| self.right_polynomials.push(polynomial.coefficients()));
         }
         let logged = self.log.filter(|log| first + count <= log.len());
-        let differs = logged.is_some_and(|log| {
+        let is_different = logged.is_some_and(|log| {
             (first..).zip(detection.polynomials).any(|(at, right)| are_different(log.get(at), right.coefficients()))
         });
         if let Some(up) = self.step.passes.last_mut().filter(|up| up.pass == pass) {
@@ -398,7 +398,7 @@ impl Observer for Inspector<'_> {
             if let Decision::Hit { time, normal } = decision {
                 up.hits.push(Impulse { pair, normal, time });
             }
-            if differs {
+            if is_different {
                 keep_pair(&mut up.differing_pairs, pair);
             }
         }

@@ -133,8 +133,8 @@ pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Ex
         true => (program_result, Reason::Program(find_progress(&program.ended, judged, run.limits))),
         false => (trace_result, trace_reason),
     };
-    let differs = fair::find_cause(judged);
-    let has_fault = rules == Rules::Fair || differs.is_none();
+    let difference_cause = fair::find_cause(judged);
+    let has_fault = rules == Rules::Fair || difference_cause.is_none();
     let look = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     let mut result = SceneResult {
@@ -142,7 +142,7 @@ pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Ex
         verdict,
         reason,
         ended: Some(program.ended.clone()),
-        difference_cause: differs,
+        difference_cause,
         disclosure: Some(Disclosure::from_outcome(judged, rules)),
         explanations: if is_explained { explain(look) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),

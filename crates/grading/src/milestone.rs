@@ -24,7 +24,7 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
     let runner = Runner { limits: &limits, ..*runner };
     let mut is_traced = false;
-    let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
+    let mut accepts = |integrator: Integrator, collision: &str| -> Result<bool, String> {
         let (trace, outcome) = runner.collect_trace(program, &probe_task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
         // If the program crashes, it has accepted the scene.
@@ -32,18 +32,18 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     };
     let mut integrators = Vec::new();
     for integrator in Integrator::ALL {
-        if takes(integrator, "")? {
+        if accepts(integrator, "")? {
             integrators.push(integrator);
         }
     }
-    let takes_collisions = takes(Integrator::ExplicitEuler, "<collision type=\"continuous-time\" COR=\"1\"/>")?;
-    let fits = |assignment: &Assignment| {
+    let accepts_collisions = accepts(Integrator::ExplicitEuler, "<collision type=\"continuous-time\" COR=\"1\"/>")?;
+    let is_match = |assignment: &Assignment| {
         let library = &assignment.definition().library;
-        let knows = |integrator: &Integrator| library.integrators.contains(integrator);
-        library.rejects_collisions != takes_collisions
-            && Integrator::ALL.iter().all(|integrator| knows(integrator) == integrators.contains(integrator))
+        let has_integrator = |integrator: &Integrator| library.integrators.contains(integrator);
+        library.rejects_collisions != accepts_collisions
+            && Integrator::ALL.iter().all(|integrator| has_integrator(integrator) == integrators.contains(integrator))
     };
-    Ok(Assignment::list_default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
+    Ok(Assignment::list_default_first().into_iter().find(|assignment| is_traced && is_match(assignment)))
 }
 
 /// Returns whether the library of the milestone `found` lacks integrators or collision types that scenes of `expected`

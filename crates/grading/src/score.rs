@@ -87,8 +87,9 @@ pub(super) fn build_grade(plan: &Plan, submission: String, is_timed: bool, resul
 /// Treats the results as parts of one submission. If the trace of any scene has entries, an empty trace of another
 /// scene counts as wrong, not as unwritten.
 fn mark_unwritten(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
-    let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
-    if results.iter().any(shows) {
+    let is_judged =
+        |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
+    if results.iter().any(is_judged) {
         for (result, _) in results.iter_mut().filter(|(result, _)| result.verdict == Verdict::Unwritten) {
             result.verdict = Verdict::WrongAnswer;
         }

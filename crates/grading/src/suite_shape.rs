@@ -177,14 +177,14 @@ fn remove_unknown(
         }
     }
     let entries = std::mem::take(table).into_iter().filter_map(|(key, mut value)| {
-        let fits = match keys.iter().find(|TableKey(name, ..)| key.get_ref() == name) {
+        let is_valid = match keys.iter().find(|TableKey(name, ..)| key.get_ref() == name) {
             Some(TableKey(name, kind, _)) => has_type(name, kind, &mut value, problems),
             None => {
                 problems.push((key.span(), describe_unknown(key.get_ref(), keys, place)));
                 false
             }
         };
-        fits.then_some((key, value))
+        is_valid.then_some((key, value))
     });
     *table = entries.collect();
 }
@@ -193,9 +193,9 @@ fn remove_unknown(
 /// removed.
 fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
-    let is = value.get_ref().type_str();
+    let actual_type = value.get_ref().type_str();
     let mut wrong = |wanted: &str| {
-        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", with_article(is))));
+        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", with_article(actual_type))));
         false
     };
     match (kind, value.get_mut()) {
@@ -219,8 +219,8 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
         (ValueKind::TextList, DeValue::Array(list)) => {
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
-                let is = with_article(item.get_ref().type_str());
-                problems.push((item.span(), format!("each of {name} must be a text in quotes, not {is}")));
+                let actual_type = with_article(item.get_ref().type_str());
+                problems.push((item.span(), format!("each of {name} must be a text in quotes, not {actual_type}")));
             }
             problems.len() == before
         }

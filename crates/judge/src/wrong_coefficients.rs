@@ -15,10 +15,10 @@ const CANCELLATION_FLOOR: f64 = 1e-13;
 /// Both lists have the highest power first and are aligned at the constant term.
 pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
-        let holds = |power: &usize| {
+        let agrees = |power: &usize| {
             coefficient_of_power(expected, *power) != 0.0 && coefficient_agrees(expected, actual, *power, factor)
         };
-        (0..expected.len()).filter(holds).count()
+        (0..expected.len()).filter(agrees).count()
     };
     // The coefficient from which a factor was computed always agrees with it, which proves nothing.
     let mut best = (agreeing(1.0).max(1), 1.0);

@@ -25,8 +25,10 @@ impl TryFrom<Vec<WrittenNumber>> for Polynomial {
 
     fn try_from(form: Vec<WrittenNumber>) -> Result<Self, Self::Error> {
         let coefficients: Vec<f64> = form.into_iter().map(|number| number.0).collect();
-        let fits = coefficients.len() <= MAX_COEFFICIENTS;
-        fits.then(|| Self::untrimmed(&coefficients)).ok_or("a detection polynomial must have at most six coefficients")
+        let is_short_enough = coefficients.len() <= MAX_COEFFICIENTS;
+        is_short_enough
+            .then(|| Self::untrimmed(&coefficients))
+            .ok_or("a detection polynomial must have at most six coefficients")
     }
 }
 

@@ -228,10 +228,13 @@ impl Painter {
         let size = self.size();
         let middle = [0.5 * f64::from(size.width()), 0.5 * f64::from(size.height())];
         let off = above(middle);
-        let near = [middle[0] - off * unit[0], middle[1] - off * unit[1]];
+        let nearest_point = [middle[0] - off * unit[0], middle[1] - off * unit[1]];
         let reach = f64::from(size.width()) + f64::from(size.height());
         let along = [-unit[1] * reach, unit[0] * reach];
-        let ends = [[near[0] - along[0], near[1] - along[1]], [near[0] + along[0], near[1] + along[1]]];
+        let ends = [
+            [nearest_point[0] - along[0], nearest_point[1] - along[1]],
+            [nearest_point[0] + along[0], nearest_point[1] + along[1]],
+        ];
         if let Some(ends) = self.frame(4.0).clip_line(ends[0], ends[1]) {
             shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(color) });
         }

@@ -49,9 +49,9 @@ impl Diagnosis {
         }
         let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
-        let is = if wrong == 1 { "is" } else { "are" };
+        let verb = if wrong == 1 { "is" } else { "are" };
         let traces = format_count(self.cases.len() as u64, "trace");
-        let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
+        let _ = writeln!(text, "{wrong} of {traces} {verb} wrong by the fair rules.\n");
         if wrong == 0 {
             text += "These scenes show single formulas. A suite has more: fosssim-oracle grade PROGRAM\n\n";
         }

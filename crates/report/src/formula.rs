@@ -73,8 +73,8 @@ fn is_between_factors(before: &str, behind: &str) -> bool {
 /// Returns whether a `-` between two texts is a minus sign, and not a hyphen.
 fn is_minus(before: &str, behind: &str) -> bool {
     let is_first = before.is_empty() || before.ends_with([' ', '(', '=', '|']);
-    let begins = behind.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '|'));
-    is_first && (begins || behind.starts_with(' ') && !before.is_empty()) || is_between_factors(before, behind)
+    let is_before_term = behind.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '|'));
+    is_first && (is_before_term || behind.starts_with(' ') && !before.is_empty()) || is_between_factors(before, behind)
 }
 
 #[cfg(test)]

@@ -111,14 +111,14 @@ impl KeeperPool {
     /// room.
     pub(super) fn take_keeper(&self, kind: &RunKind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
-        let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
-        let taken = match fits {
+        let same_kind = idle.iter().rposition(|keeper| keeper.kind == *kind);
+        let taken = match same_kind {
             Some(index) => Some(idle.swap_remove(index)),
             None => idle.pop(),
         };
         drop(idle);
         // The keeper is dropped here, after the lock is released, so that no thread waits for its end.
-        taken.filter(|_| fits.is_some())
+        taken.filter(|_| same_kind.is_some())
     }
 
     fn return_keeper(&self, keeper: Keeper) {

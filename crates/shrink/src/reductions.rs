@@ -27,14 +27,14 @@ fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>
 /// a force on its bodies or its edge.
 fn without_parts(scene: &Scene, parts: &Range<usize>) -> Scene {
     let (mut scene, mut part) = (scene.clone(), 0..);
-    let mut stays = || part.next().is_some_and(|part| !parts.contains(&part));
+    let mut is_kept = || part.next().is_some_and(|part| !parts.contains(&part));
     let set = |new: &[Option<usize>], index: &mut usize| new[*index].inspect(|new| *index = *new).is_some();
-    let bodies = retain(&mut scene.particles, |_| stays());
+    let bodies = retain(&mut scene.particles, |_| is_kept());
     let edges =
-        retain(&mut scene.edges, |edge| stays() && set(&bodies, &mut edge.first) && set(&bodies, &mut edge.second));
-    scene.half_planes.retain(|_| stays());
+        retain(&mut scene.edges, |edge| is_kept() && set(&bodies, &mut edge.first) && set(&bodies, &mut edge.second));
+    scene.half_planes.retain(|_| is_kept());
     scene.forces.retain_mut(|force| {
-        stays()
+        is_kept()
             && match force {
                 Force::Spring { edge, .. } => set(&edges, edge),
                 Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => {

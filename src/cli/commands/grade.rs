@@ -116,8 +116,8 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         drop(output::Output::create(file, &[])?);
     }
     let backend = require_backend(arguments.unsafe_no_sandbox)?;
-    let keeps = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1 || sharding.is_some();
-    let folder = keeps.then_some(output);
+    let has_folder = arguments.output.is_some() || arguments.keep_traces || submissions.len() > 1 || sharding.is_some();
+    let folder = has_folder.then_some(output);
     let scene_count = plan.scenes().count();
     let mut last_run = LastRun::open(folder.as_deref(), &submissions, &plan.name);
     let failed = match (arguments.failed, last_run.failed_scenes()) {

@@ -220,8 +220,8 @@ pub(super) fn judge_case(
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
     let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.disclose_finding(first));
     let explanations = limit_explanations(hints, explanations);
-    let draws = has_pictures && !accepted;
-    let card = draws.then(|| {
+    let has_card = has_pictures && !accepted;
+    let card = has_card.then(|| {
         let judged = JudgedTrace {
             scene,
             name: &name,

@@ -109,8 +109,8 @@ impl<'a> Search<'a> {
     /// Returns whether a folder is a single submission. It then contains the program, or a file with which the suite's
     /// build begins.
     fn is_submission(&self, path: &Path) -> bool {
-        let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
-        let Some(build) = self.build else { return holds(&self.arguments.program) };
+        let has_file = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
+        let Some(build) = self.build else { return has_file(&self.arguments.program) };
         let tool = build.command.first().map(String::as_str).unwrap_or_default();
         let usual: &[&str] = match tool.rsplit('/').next() {
             Some("make" | "gmake") => &["Makefile", "makefile", "GNUmakefile"],
@@ -120,7 +120,7 @@ impl<'a> Search<'a> {
         };
         let arguments =
             build.command.iter().map(String::as_str).filter(|argument| !argument.starts_with('/') && *argument != ".");
-        usual.iter().copied().chain(arguments).any(holds)
+        usual.iter().copied().chain(arguments).any(has_file)
     }
 
     /// Returns whether a folder is the one for results, or contains the results of an earlier grading.
@@ -139,9 +139,9 @@ impl<'a> Search<'a> {
         let holds_results = self.is_results(folder);
         let before = found.len();
         for path in &paths {
-            let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
+            let is_named = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let reason = match fs::symlink_metadata(path) {
-                _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULT_FOLDER_REASON.to_owned(),
+                _ if holds_results && RESULT_FOLDERS.iter().any(is_named) => RESULT_FOLDER_REASON.to_owned(),
                 _ if path.file_name().is_some_and(fosssim_intake::is_system_file) => {
                     "a file manager or a build tool created it".to_owned()
                 }

@@ -126,7 +126,8 @@ impl SubmissionGrading<'_> {
     /// readable trace.
     fn infer_milestone(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.plan.milestone?;
-        let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
+        let count =
+            |has_verdict: fn(Verdict) -> bool| results.iter().filter(|(result, _)| has_verdict(result.verdict)).count();
         let unread = |verdict| matches!(verdict, Verdict::RuntimeError | Verdict::BadTrace | Verdict::NoOutput);
         if count(Verdict::is_accepted) > 0 || 2 * count(unread) < results.len() {
             return None;

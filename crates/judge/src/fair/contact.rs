@@ -93,8 +93,8 @@ pub(super) fn compare_hit(
     judged: &mut StepJudgment,
 ) -> Option<FindingDetail> {
     if actual.time != own.time {
-        let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, evaluate));
-        if !fits {
+        let is_right_time = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, evaluate));
+        if !is_right_time {
             return Some(FindingDetail::ContactTime { expected: own, actual: *actual });
         }
     }

@@ -72,7 +72,7 @@ pub(super) fn explain_velocities(
 ) -> Option<(Vec<FindingDetail>, State)> {
     let scene = context.scene;
     let h = scene.time_step;
-    let moves = scene.integrator != Integrator::ExplicitEuler;
+    let changes_positions = scene.integrator != Integrator::ExplicitEuler;
     let NearPairs { candidates, layer, .. } = NearPairs::find(scene, tolerances, before, own, logged)?;
     let (mut faulty, mut is_explained) = (own.clone(), false);
     let mut found = Vec::new();
@@ -86,7 +86,7 @@ pub(super) fn explain_velocities(
             let change = excess * change;
             let velocity = vector_at(&faulty.velocities, particle) + change;
             set_vector(&mut faulty.velocities, particle, velocity);
-            if moves {
+            if changes_positions {
                 let position = vector_at(&faulty.positions, particle) + h * change;
                 set_vector(&mut faulty.positions, particle, position);
             }
@@ -142,9 +142,9 @@ impl NearPairs {
         for one in near_pairs {
             let is_felt = |(particle, change): &&(usize, Vec2)| length(*change) > tolerances.velocity(*particle);
             let felt: Vec<usize> = one.changes().iter().filter(is_felt).map(|(particle, _)| *particle).collect();
-            let shows =
+            let is_right =
                 |particle: &usize| !wrong[*particle] && length(sums[*particle]) > tolerances.velocity(*particle);
-            if felt.iter().any(shows) {
+            if felt.iter().any(is_right) {
                 right.push(one.pair);
             } else if !felt.is_empty() && felt.iter().all(|particle| wrong[*particle]) {
                 candidates.push(one);

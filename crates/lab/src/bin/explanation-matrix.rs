@@ -84,10 +84,12 @@ fn main() -> anyhow::Result<ExitCode> {
 
 /// Prints how many mistakes are recognized, and on how many traces.
 fn count_recognized(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
-    let best =
-        |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|outcome| is(&outcome.0))).count();
-    let all =
-        |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|outcome| is(&outcome.0)).count();
+    let best = |is_counted: fn(&Outcome) -> bool| {
+        wrong.iter().filter(|(_, all)| all.iter().any(|outcome| is_counted(&outcome.0))).count()
+    };
+    let all = |is_counted: fn(&Outcome) -> bool| {
+        wrong.iter().flat_map(|(_, all)| *all).filter(|outcome| is_counted(&outcome.0)).count()
+    };
     println!(
         "\nmistakes: {}; first on their best scene: {}; first or the same as the first: {}",
         wrong.len(),

@@ -45,11 +45,12 @@ fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[E
     let mistakes =
         likely.iter().filter(|explanation| explanation.is_proven()).filter_map(|explanation| find(&explanation.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
-    let ends = |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
-        Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
-    };
+    let is_explained =
+        |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
+            Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
+        };
     let mut non_finite = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
-    non_finite.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
+    non_finite.all(|(scene, _)| students.iter().any(|student| is_explained(scene, *student)))
 }
 
 /// The number of explained traces that one contradicting trace outweighs. A mistake that explains up to 8 traces is
@@ -66,7 +67,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     if !concerns_state && (stage.is_none() || is_empty_stage(row)) {
         return false;
     }
-    let explains = |list: &[Explanation]| {
+    let names_mistake = |list: &[Explanation]| {
         list.iter().any(|explanation| alternative_statements(explanation).get(key) == Some(&true))
     };
     let has_same_stage =
@@ -79,17 +80,18 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
         let is_wrong = |explanation: &Explanation| {
             has_same_stage(explanation) || is_refuted(explanation) || explanation.key == key
         };
-        !explains(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
+        !names_mistake(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
     };
-    let explained = wrong.iter().filter(|(_, list)| explains(list)).count();
+    let explained = wrong.iter().filter(|(_, list)| names_mistake(list)).count();
     let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
     let work = Cell::new(0);
-    let shows = |scene: &Scene, key: &str| find_effect(scene, key, &work) == MistakeEffect::Visible;
+    let is_visible = |scene: &Scene, key: &str| find_effect(scene, key, &work) == MistakeEffect::Visible;
     // Two mistakes in the same force or integrator, whose keys begin with the same word, are rivals: a program makes
     // one of them.
     let is_rival = |other: &str| concerns_state && other.split('-').next() == key.split('-').next();
-    let is_alone = |scene: &Scene| !others.iter().any(|other| !is_rival(other) && *other != key && shows(scene, other));
-    let against = wrong.iter().filter(|(scene, list)| is_open(list) && shows(scene, key) && is_alone(scene));
+    let is_alone =
+        |scene: &Scene| !others.iter().any(|other| !is_rival(other) && *other != key && is_visible(scene, other));
+    let against = wrong.iter().filter(|(scene, list)| is_open(list) && is_visible(scene, key) && is_alone(scene));
     explained > 0 && against.take(needed).count() == needed
 }
 

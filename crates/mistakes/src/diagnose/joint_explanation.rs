@@ -303,13 +303,13 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
     let observed = |row: &Row| {
         let has_row_kind =
             |explanation: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(explanation) == Some(kind));
-        let shows = |trace: &&OpenTrace| {
+        let is_concerned = |trace: &&OpenTrace| {
             trace
                 .symptoms
                 .iter()
                 .any(|symptom| is_in_earliest(&symptom.explanation) && has_row_kind(&symptom.explanation))
         };
-        traces.iter().filter(shows).count()
+        traces.iter().filter(is_concerned).count()
     };
     let late = CATALOG.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();

@@ -70,9 +70,9 @@ impl NonFiniteSearch {
             }
             return;
         }
-        let begins = find_non_finite_value(&frames.before.state).is_none()
+        let is_first = find_non_finite_value(&frames.before.state).is_none()
             && (has_non_finite_value(&frames.mid) || has_non_finite_value(&frames.end));
-        if begins {
+        if is_first {
             *self = Self { is_found: true, explanation: find_in_step(reference, scene, step, frames) };
         }
     }

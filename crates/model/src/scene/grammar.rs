@@ -70,10 +70,10 @@ pub fn find_closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -
         .filter_map(|candidate| {
             let other = self::normalize_word(candidate);
             // The beginning of a name is as good as a name with one typo.
-            let begins = plain.len() >= 3 && other.starts_with(&plain);
+            let is_beginning = plain.len() >= 3 && other.starts_with(&plain);
             let distance = match habit {
                 Some(name) if name == candidate => 0,
-                _ if begins && plain != other => 1,
+                _ if is_beginning && plain != other => 1,
                 _ => strsim::osa_distance(&plain, &other),
             };
             let allowed = (plain.len().max(other.len()) / 3).min(2);

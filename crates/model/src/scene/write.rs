@@ -52,8 +52,8 @@ pub fn write(scene: &Scene) -> String {
 }
 
 fn particle_element(particle: &Particle) -> Element {
-    let moves = Element::new("particle").vector("px", "py", particle.position).vector("vx", "vy", particle.velocity);
-    let fixed = moves.number("m", particle.mass).with_attribute("fixed", u8::from(particle.fixed));
+    let motion = Element::new("particle").vector("px", "py", particle.position).vector("vx", "vy", particle.velocity);
+    let fixed = motion.number("m", particle.mass).with_attribute("fixed", u8::from(particle.fixed));
     let element = fixed.number("radius", particle.radius);
     match &particle.tag {
         Some(tag) => element.text("tag", tag),

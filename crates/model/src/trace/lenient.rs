@@ -420,10 +420,10 @@ impl<R: Read> LenientReader<R> {
         }
         let is_complete = !self.has_failed;
         let begin = self.source.offset();
-        let keeps = !self.is_full(frame);
+        let has_room = !self.is_full(frame);
         let start = frame.polynomials.coefficients.len();
         let max_length =
-            if self.is_strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
+            if self.is_strict { usize::MAX } else { start + if has_room { MAX_KEPT_COEFFICIENTS } else { 0 } };
         let mut is_leading = !self.is_strict;
         // The bytes of each coefficient that were read, as the original keeps them.
         let mut value = [0; 8];
@@ -448,7 +448,7 @@ impl<R: Read> LenientReader<R> {
                 break;
             }
         }
-        if keeps {
+        if has_room {
             frame.polynomials.coefficient_ends.push(frame.polynomials.coefficients.len());
         }
         frame.is_unchanged &= !self.has_failed && written >= 0;

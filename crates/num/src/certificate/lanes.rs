@@ -59,7 +59,7 @@ pub fn is_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask
 #[inline(always)]
 fn is_parabola_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
-    let misses = a.is_below(0.0)
+    let has_no_zero = a.is_below(0.0)
         & (b * b).lt(PARABOLA_COMPLEX_FACTOR * product)
         & c.le(PARABOLA_MIN_ZERO_PRODUCT * a)
         & is_within(product, PARABOLA_MIN_PRODUCT, PARABOLA_MAX_PRODUCT)
@@ -72,7 +72,7 @@ fn is_parabola_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<
         & b.abs().le(PARABOLA_NEAR_LIMIT * a.abs())
         & c.abs().le((PARABOLA_NEAR_LIMIT * PARABOLA_NEAR_LIMIT) * a.abs())
         & is_within(size, PARABOLA_MIN_PRODUCT, PARABOLA_MAX_PRODUCT);
-    c.is_below(0.0) & (misses | negative)
+    c.is_below(0.0) & (has_no_zero | negative)
 }
 
 /// Returns the lanes in which a value is at least `low` and less than `high`.

@@ -89,8 +89,8 @@ impl Observer for CollisionWalk<'_> {
 
     fn end_pass(&mut self, pass: Pass, hits: usize) {
         if hits == 0 {
-            let ends = if matches!(pass.stage, Stage::Impulses { .. }) { ", so the loop ends" } else { "" };
-            self.text += &format!("  nothing collides{ends}\n");
+            let consequence = if matches!(pass.stage, Stage::Impulses { .. }) { ", so the loop ends" } else { "" };
+            self.text += &format!("  nothing collides{consequence}\n");
         }
     }
 

@@ -28,12 +28,12 @@ pub fn detect_file_kind(start: &[u8]) -> Option<&'static str> {
         return None;
     }
     let text = text.trim_ascii_start().to_ascii_lowercase();
-    let begins = |marks: &[&[u8]]| marks.iter().any(|mark| text.starts_with(mark));
-    Some(if begins(&[b"<!doctype html", b"<html"]) {
+    let begins_with = |marks: &[&[u8]]| marks.iter().any(|mark| text.starts_with(mark));
+    Some(if begins_with(&[b"<!doctype html", b"<html"]) {
         "looks like HTML"
-    } else if begins(&[b"<?xml", b"<scene"]) {
+    } else if begins_with(&[b"<?xml", b"<scene"]) {
         "looks like a scene or other XML; SCENE comes first, then TRACE"
-    } else if begins(&[b"{", b"["]) {
+    } else if begins_with(&[b"{", b"["]) {
         "looks like JSON"
     } else {
         "looks like text"

@@ -198,8 +198,8 @@ pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, Strin
             (format!("step {step} of {}", outcome.steps), message, advice)
         }
     };
-    let asks = message.ends_with('?');
-    (place, message, (!asks).then_some(advice))
+    let is_question = message.ends_with('?');
+    (place, message, (!is_question).then_some(advice))
 }
 
 /// Returns further remarks about the trace.

@@ -94,8 +94,8 @@ pub(crate) struct ClassFigures {
 
 impl ClassFigures {
     pub(crate) fn from_grades(grades: &[Grade]) -> Self {
-        let ran = || grades.iter().filter(|grade| !has_never_run(grade));
-        let mut reached: Vec<f64> = ran().filter_map(|grade| grade.points).collect();
+        let judged = || grades.iter().filter(|grade| !has_never_run(grade));
+        let mut reached: Vec<f64> = judged().filter_map(|grade| grade.points).collect();
         reached.sort_by(f64::total_cmp);
         #[expect(clippy::cast_precision_loss, reason = "classes are small")]
         let mean = reached.iter().sum::<f64>() / reached.len() as f64;
@@ -110,9 +110,9 @@ impl ClassFigures {
         let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
         Self {
             submissions: grades.len(),
-            run_submissions: ran().count(),
+            run_submissions: judged().count(),
             accepted: grades.iter().filter(|grade| grade.verdict.is_accepted()).count(),
-            without_points: ran().count() - reached.len(),
+            without_points: judged().count() - reached.len(),
             points,
             max_points: grades.first().map_or(0.0, |grade| grade.max_points),
             submissions_since: is_compared.then(|| (changed(Ordering::Greater), changed(Ordering::Less))),

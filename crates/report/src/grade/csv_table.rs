@@ -114,8 +114,8 @@ fn write_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> St
 fn escape_formula(text: &str) -> String {
     const FORMULA_STARTS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = to_one_line(text);
-    let begins = |c: char| c == '\'' || c.is_whitespace();
-    if text.trim_start_matches(begins).starts_with(FORMULA_STARTS) { format!("'{text}") } else { text }
+    let is_skipped = |c: char| c == '\'' || c.is_whitespace();
+    if text.trim_start_matches(is_skipped).starts_with(FORMULA_STARTS) { format!("'{text}") } else { text }
 }
 
 #[cfg(test)]

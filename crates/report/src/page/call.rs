@@ -196,13 +196,13 @@ fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Ro
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
             let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), render_number);
             let missing = nothing || own.is_empty() && !logged.is_empty();
-            let differs = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
+            let is_different = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
             let (right, yours) = match (at(expected), at(own)) {
-                (Some(expected), Some(own)) => mark_difference(factor * expected, own, differs),
+                (Some(expected), Some(own)) => mark_difference(factor * expected, own, is_different),
                 (expected, _) if logged.is_empty() && !nothing => (cell(expected), "not known".to_owned()),
                 (expected, own) => (cell(expected), cell(own)),
             };
-            let word = if missing { "missing" } else { ["", "differs"][usize::from(differs)] };
+            let word = if missing { "missing" } else { ["", "differs"][usize::from(is_different)] };
             rows.push(Row { role: curve.role.to_string(), power, expected: right, own: yours, word });
         }
     }

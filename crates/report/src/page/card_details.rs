@@ -64,20 +64,20 @@ pub(super) fn describe_omitted<'a>(cards: impl Iterator<Item = Option<&'a Card>>
     let without = of.iter().filter(|room| matches!(room, CardDetail::Words | CardDetail::Pictures)).count();
     let rounded = of.iter().filter(|room| **room == CardDetail::Rounded).count();
     let scenes = |count: usize| if count == 1 { "one scene has".to_owned() } else { format!("{count} scenes have") };
-    let mut says = Vec::new();
+    let mut parts = Vec::new();
     if without > 0 {
-        says.push(format!("{} no motion on this page", scenes(without)));
+        parts.push(format!("{} no motion on this page", scenes(without)));
     }
     if rounded > 0 {
-        says.push(format!("{} a rounded motion on this page", scenes(rounded)));
+        parts.push(format!("{} a rounded motion on this page", scenes(rounded)));
     }
-    if says.is_empty() {
+    if parts.is_empty() {
         return String::new();
     }
     format!(
         "<p class=\"hint\">The page would grow beyond 3 MB: {}. At a terminal, \
          <code>grade --scene NAME --format html=FILE</code> makes a page of one scene.</p>\n",
-        says.join("; ")
+        parts.join("; ")
     )
 }
 
@@ -94,8 +94,8 @@ mod tests {
     fn rooms(cards: &[Card]) -> (Vec<CardDetail>, String) {
         let all = || cards.iter().map(Some);
         let rooms = distribute(all());
-        let says = describe_omitted(all(), &rooms);
-        (rooms, says)
+        let text = describe_omitted(all(), &rooms);
+        (rooms, text)
     }
 
     /// Tests that the last motions are rounded if exact ones do not fit on the page together; if even rounded ones do

@@ -291,8 +291,8 @@ fn group_by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
 
 /// Renders a histogram of the shares of points, for the submissions that were run.
 fn render_bars(grades: &[Grade]) -> String {
-    let ran = grades.iter().filter(|grade| !has_never_run(grade));
-    histogram::render_histogram(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
+    let judged = grades.iter().filter(|grade| !has_never_run(grade));
+    histogram::render_histogram(judged.filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
 #[cfg(test)]

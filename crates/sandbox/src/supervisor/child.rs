@@ -304,8 +304,8 @@ impl OpenedFile {
             const READ_AND_EXECUTE: u32 = 0o005;
             let program = File::open(path)?;
             let mode = program.metadata()?.permissions().mode();
-            let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
-            match fits && !mounts::forbids_execution(program.as_fd()) {
+            let has_permissions = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
+            match has_permissions && !mounts::forbids_execution(program.as_fd()) {
                 true => Ok(Self { file: program.into(), is_copy: false }),
                 false => Self::copy_into_memory(&program, max_bytes),
             }

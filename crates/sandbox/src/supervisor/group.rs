@@ -310,13 +310,13 @@ fn list_group_places(mounts: &str, groups: &str, kind: HierarchyKind) -> Vec<Pat
     let mounted = mounts.lines().find_map(|line| {
         let (before, after) = line.split_once(" - ")?;
         let mut fields = before.split(' ').skip(3);
-        let fits = match kind {
+        let is_hierarchy = match kind {
             HierarchyKind::Unified => after.starts_with("cgroup2 "),
             HierarchyKind::Memory => {
                 after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(limits_memory)
             }
         };
-        fits.then_some((fields.next()?, fields.next()?))
+        is_hierarchy.then_some((fields.next()?, fields.next()?))
     });
     let Some((root, top)) = mounted else { return Vec::new() };
     let top = Path::new(top);

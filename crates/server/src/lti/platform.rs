@@ -188,9 +188,9 @@ mod tests {
     #[test]
     fn services_are_on_hosts_that_an_administrator_named() {
         let platform = Platform { id: 1, name: "lms".to_owned(), settings: wish() };
-        let may = |text: &str| platform.parse_registered_url(text, false).is_some();
-        assert!(may("https://lms.example.org/lineitems/1?type=2"));
-        assert!(may("https://tokens.example.org/x") && may("https://grades.example.org:8443/x"));
+        let is_allowed = |text: &str| platform.parse_registered_url(text, false).is_some();
+        assert!(is_allowed("https://lms.example.org/lineitems/1?type=2"));
+        assert!(is_allowed("https://tokens.example.org/x") && is_allowed("https://grades.example.org:8443/x"));
         for address in [
             "https://169.254.169.254/latest/meta-data",
             "https://grades.example.org/x",
@@ -199,7 +199,7 @@ mod tests {
             "https://lms.example.org.evil.example/x",
             "http://lms.example.org/x",
         ] {
-            assert!(!may(address), "{address}");
+            assert!(!is_allowed(address), "{address}");
         }
         assert_eq!(
             platform.origins(false),

@@ -76,8 +76,8 @@ impl Ffmpeg {
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
         // A line of this list looks like ` V....D libx264 description`.
-        let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
-        let found = ENCODERS.into_iter().find(|(name, _)| has(name));
+        let is_listed = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
+        let found = ENCODERS.into_iter().find(|(name, _)| is_listed(name));
         found.context(
             "this ffmpeg has no encoder for MP4 (libx264, libopenh264, libvpx-vp9, mpeg4); name the output \
             .gif",

@@ -63,14 +63,14 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
 /// Returns whether a mistake in forces, integrators, penalties or simple responses may be visible on the scene.
 fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = changed_term(row);
-    let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
+    let has_force = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
     let is_implicit = matches!(scene.integrator, Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler);
     let is_simple = matches!(scene.collision, Collision::Simple { .. });
     let has_penalty = matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. });
     match term.row().part {
         _ if term == Term::Penalty => has_penalty,
-        Part::Force(kind) => has(kind),
-        Part::Jacobians(kind) => is_implicit && has(kind),
+        Part::Force(kind) => has_force(kind),
+        Part::Jacobians(kind) => is_implicit && has_force(kind),
         Part::Integrator(integrator) => scene.integrator == integrator,
         Part::Penalty(kind) => has_penalty && counts[kind] > 0,
         Part::SimpleDetection(kind) | Part::SimpleResponse(kind) => is_simple && counts[kind] > 0,

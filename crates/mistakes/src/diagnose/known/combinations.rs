@@ -186,15 +186,15 @@ impl<'a> Search<'a> {
         let mut starts = vec![self.find_empty_stages()];
         let counts: Vec<usize> =
             self.scan.wrong_steps.iter().map(|sample| sample.records.end.polynomials.len()).collect();
-        let fits =
+        let divides_counts =
             |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
         let sizes = self.row_sizes();
         let all: usize = sizes.iter().map(|(_, size)| size).sum();
-        if fits(all) {
+        if divides_counts(all) {
             return starts;
         }
         let mut sets = list_subsets(&sizes);
-        sets.retain(|set| !set.is_empty() && fits(all - set.iter().map(|(_, size)| size).sum::<usize>()));
+        sets.retain(|set| !set.is_empty() && divides_counts(all - set.iter().map(|(_, size)| size).sum::<usize>()));
         starts.extend(sets.into_iter().take(MAX_MISTAKES).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
     }

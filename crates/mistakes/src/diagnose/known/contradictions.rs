@@ -68,18 +68,19 @@ fn has_passes(sample: &KeptStep) -> bool {
 fn is_moving(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
-    let differs = |mid: &LoggedNumbers| find_state_difference(&mid.state, end, &ROUND_OFF).is_some();
-    is_sound && sample.records.mid.as_ref().is_some_and(differs)
+    let is_different = |mid: &LoggedNumbers| find_state_difference(&mid.state, end, &ROUND_OFF).is_some();
+    is_sound && sample.records.mid.as_ref().is_some_and(is_different)
 }
 
 /// Returns whether the geometric part moves a particle and leaves it away from its start.
 fn leaves_start(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;
-    let differs = |ours: &[f64], particle: usize| {
+    let is_different = |ours: &[f64], particle: usize| {
         length(vector_at(ours, particle) - vector_at(end, particle))
             > CLEAR_TOLERANCE.state * (1.0 + length(vector_at(end, particle)))
     };
-    (0..end.len() / 2)
-        .any(|particle| differs(&mid.state.positions, particle) && differs(&sample.before.positions, particle))
+    (0..end.len() / 2).any(|particle| {
+        is_different(&mid.state.positions, particle) && is_different(&sample.before.positions, particle)
+    })
 }

@@ -243,8 +243,8 @@ fn corners(pair: &PlacedPair<'_>) -> [Vec2; 2] {
 fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     let [one, other] = pair.boxes();
     let across = 1 - axis;
-    let begins = if one[0][axis] <= other[0][axis] { one } else { other };
-    pair.boxes_between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
+    let lower = if one[0][axis] <= other[0][axis] { one } else { other };
+    pair.boxes_between(axis).any(|body| body[0][across] > lower[1][across] || lower[0][across] > body[1][across])
 }
 
 /// Returns the overlap of two boxes on an axis.

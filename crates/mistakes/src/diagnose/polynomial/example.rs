@@ -51,8 +51,8 @@ fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
 
 fn motion_values(points: &[PointMotion], names: [Input; 2], radii: &[f64; 2]) -> Vec<ExampleValue> {
     let starts = [Input::X1, Input::X2, Input::X3].into_iter().zip(points.iter().map(|point| point.start));
-    let moves = [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points.iter().map(|point| point.shift));
-    let vectors = starts.chain(moves).map(|(input, value)| vector_value(input, value));
+    let shifts = [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points.iter().map(|point| point.shift));
+    let vectors = starts.chain(shifts).map(|(input, value)| vector_value(input, value));
     vectors.chain(names.into_iter().zip(radii).map(|(input, value)| number_value(input, *value))).collect()
 }
 

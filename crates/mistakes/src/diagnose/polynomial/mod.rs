@@ -192,14 +192,14 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
             && matches!(row.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane);
         row.kind == RowKind::Wrong && (has_kind || row.area == Area::Handover)
     };
-    let makes = |row: &&Row| {
+    let reproduces = |row: &&Row| {
         study.cases.iter().all(|case| {
             let predicted = body_polynomials(Student::new(Some(row.mistake)), &case.sample.motion);
             let is_match = |predicted: &Vec<f64>| polynomial_matches(predicted, case.logged, &ROUND_OFF);
             predicted.get(number).is_some_and(is_match)
         })
     };
-    CATALOG.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
+    CATALOG.iter().filter(is_formula).filter(reproduces).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
 /// Returns a detail of a guess about `subjects` as part of the explanation.

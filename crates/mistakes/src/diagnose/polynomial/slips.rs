@@ -71,11 +71,11 @@ fn collect_formula_slips(study: &PolynomialStudy, formula: &Formula, reading: Re
     let pool = ingredients(study.subject.kind());
     let mut found = Vec::new();
     for (slot, letter) in formula.letters.iter().enumerate() {
-        let uses = formula.terms.iter().filter(|term| term.letters.contains(&slot)).count();
-        if uses == 0 {
+        let use_count = formula.terms.iter().filter(|term| term.letters.contains(&slot)).count();
+        if use_count == 0 {
             continue;
         }
-        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(LetterReplacement::Scaled);
+        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| use_count > 1).map(LetterReplacement::Scaled);
         let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(LetterReplacement::Letter);
         let dots = pool.iter().enumerate().flat_map(|(index, one)| {
             pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| LetterReplacement::Dot(one, two, sign)))

@@ -72,7 +72,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     let guesses: Vec<CoefficientEdits> = wrong.map(|power| fitting.explain_coefficient(power)).collect();
     // A polynomial without an explained coefficient is not a candidate.
     guesses.iter().find(|guess| !matches!(guess.edit(), CoefficientEdit::Unknown))?;
-    let holds = |index: usize| {
+    let is_reproduced = |index: usize| {
         let case = &study.cases[index];
         case.logged.len() <= formula.degree + 1
             && (0..=formula.degree).all(|power| {
@@ -81,7 +81,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
-    let reproduced = (0..study.cases.len()).filter(|&index| holds(index)).count();
+    let reproduced = (0..study.cases.len()).filter(|&index| is_reproduced(index)).count();
     Some(Candidate {
         guess: Guess::Coefficients {
             powers: guesses.iter().map(|guess| guess.power).collect(),
@@ -212,12 +212,12 @@ impl<'a> TermFit<'a> {
                 return false;
             }
             let edit = CoefficientEdit::Terms(changes);
-            let holds = self.explains_all(power, &edit);
-            if let (true, CoefficientEdit::Terms(changes)) = (holds, edit) {
+            let is_explained = self.explains_all(power, &edit);
+            if let (true, CoefficientEdit::Terms(changes)) = (is_explained, edit) {
                 let cost = changes.iter().map(|change| self.cost(power, order, *change)).sum();
                 found.push((changes, cost));
             }
-            holds
+            is_explained
         });
         if found.is_empty() { self.find_lost_products(power) } else { found }
     }

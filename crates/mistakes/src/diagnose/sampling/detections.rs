@@ -127,12 +127,12 @@ impl SampleCollector<'_> {
 /// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pairs` contains the
 /// number of pairs of each kind in one pass.
 fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
-    let fits = |sizes: &PairKindMap<usize>| {
+    let divides_counts = |sizes: &PairKindMap<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
         pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
     };
     let full = PairKindMap::from_fn(PairKind::polynomial_count);
-    if fits(&full) {
+    if divides_counts(&full) {
         return Some(full);
     }
     let present_kinds: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
@@ -149,7 +149,7 @@ fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Op
     let is_empty = |sizes: &PairKindMap<usize>| present_kinds.iter().any(|kind| sizes[*kind] == 0);
     // The fewest changes come first, because a student may forget a part of one detection, but rarely parts of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
-    let mut fitting = choices.into_iter().filter(fits);
+    let mut fitting = choices.into_iter().filter(divides_counts);
     let first = fitting.next()?;
     // The numbers alone do not show which of two detections is empty, and a wrong guess would make everything look
     // wrong.

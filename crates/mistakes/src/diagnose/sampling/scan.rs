@@ -195,26 +195,26 @@ impl Scanner {
             keeps_polynomials: self.is_right_without(before, actual, |records, previous| {
                 let kept = previous.polynomials.len();
                 let theirs = &mut records.polynomials;
-                let begins = theirs.len() >= kept
+                let has_prefix = theirs.len() >= kept
                     && previous
                         .polynomials
                         .iter()
                         .zip(theirs.iter())
                         .all(|(a, b)| polynomial_matches(a, b, &ROUND_OFF));
-                if begins && kept > 0 {
+                if has_prefix && kept > 0 {
                     let start = theirs.coefficient_ends[kept - 1];
                     theirs.coefficients.drain(..start);
                     theirs.coefficient_ends.drain(..kept);
                     theirs.coefficient_ends.iter_mut().for_each(|end| *end -= start);
                 }
-                begins
+                has_prefix
             }),
             keeps_impulses: self.is_right_without(before, actual, |records, previous| {
-                let begins = records.impulses.starts_with(&previous.impulses);
-                if begins {
+                let has_prefix = records.impulses.starts_with(&previous.impulses);
+                if has_prefix {
                     records.impulses.drain(..previous.impulses.len());
                 }
-                begins
+                has_prefix
             }),
             has_single_precision: is_single
                 && find_first_difference(expected, actual, &SINGLE_PRECISION_TOLERANCE).is_none(),

@@ -135,16 +135,16 @@ pub(super) fn explain_overlaps(
         }
         // A pass tests all pairs of a particle before those of the next one.
         let order = |impulse: &LoggedImpulse| impulse.pair().map(|pair| (pair.first, pair.kind, pair.second));
-        let has =
+        let has_pair =
             |list: &[LoggedImpulse], impulse: &LoggedImpulse| list.iter().any(|other| other.pair() == impulse.pair());
         match (ours.get(first), theirs.get(first)) {
             (Some(one), Some(other)) if one.pair() == other.pair() => {
                 contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));
             }
-            (Some(one), Some(other)) if !has(ours, other) && order(other) < order(one) => {
+            (Some(one), Some(other)) if !has_pair(ours, other) && order(other) < order(one) => {
                 contacts.superfluous_contacts.push((other.pair()?.kind, 0.0));
             }
-            (Some(one), _) if !has(theirs, one) => contacts.missed_contacts.push((one.pair()?.kind, 0.0)),
+            (Some(one), _) if !has_pair(theirs, one) => contacts.missed_contacts.push((one.pair()?.kind, 0.0)),
             (_, Some(other)) => contacts.superfluous_contacts.push((other.pair()?.kind, 0.0)),
             _ => {}
         }

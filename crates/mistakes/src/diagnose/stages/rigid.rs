@@ -190,10 +190,10 @@ impl ZoneMotions {
 
     fn record_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &ParticleGroup) {
         for &one in &zone.particles {
-            let (was, is) = (vector_at(&first.middle.velocities, one), vector_at(&first.end.velocities, one));
-            if length(was) > ROUND_OFF_LIMIT {
-                let ratio = is.dot(&was) / was.dot(&was);
-                self.has_stopped_otherwise |= !are_near(is, ratio * was);
+            let (before, after) = (vector_at(&first.middle.velocities, one), vector_at(&first.end.velocities, one));
+            if length(before) > ROUND_OFF_LIMIT {
+                let ratio = after.dot(&before) / before.dot(&before);
+                self.has_stopped_otherwise |= !are_near(after, ratio * before);
                 self.stop_ratios.push(ratio);
             }
         }
@@ -258,13 +258,13 @@ impl MotionErrors {
     fn measure_motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &ParticleGroup) {
         let (start, expected, end) = (&first.facts.before, first.expected_state(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| center_of_mass(scene, zone, state));
-        let (should, does) = (ours - from, theirs - from);
-        if length(should) > ROUND_OFF_LIMIT {
-            let ratio = does.dot(&should) / should.dot(&should);
-            self.has_side_shift |= !are_near(does, ratio * should);
+        let (right_shift, actual_shift) = (ours - from, theirs - from);
+        if length(right_shift) > ROUND_OFF_LIMIT {
+            let ratio = actual_shift.dot(&right_shift) / right_shift.dot(&right_shift);
+            self.has_side_shift |= !are_near(actual_shift, ratio * right_shift);
             self.shift_ratios.push(ratio);
         } else {
-            self.has_side_shift |= length(does) > ROUND_OFF_LIMIT;
+            self.has_side_shift |= length(actual_shift) > ROUND_OFF_LIMIT;
         }
         if first.zone_result(zone) == ZoneResult::Rigid {
             let [right, angle] = [(&expected, ours), (end, theirs)]
@@ -348,9 +348,9 @@ fn all_equal_one(ratios: &[f64]) -> bool {
 fn measure_turn(zone: &ParticleGroup, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);
     for &one in &zone.particles {
-        let (was, is) = (vector_at(&start.positions, one) - from, vector_at(&end.positions, one) - to);
-        across += was.x * is.y - was.y * is.x;
-        along += was.dot(&is);
+        let (before, after) = (vector_at(&start.positions, one) - from, vector_at(&end.positions, one) - to);
+        across += before.x * after.y - before.y * after.x;
+        along += before.dot(&after);
     }
     f64::atan2(across, along)
 }

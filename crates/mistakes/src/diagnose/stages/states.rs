@@ -63,8 +63,8 @@ fn find_wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<
 }
 
 fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Option<Explanation> {
-    let has = |quantity: Quantity| entries.iter().any(|entry| entry.quantity == quantity);
-    let quantity = match (has(Quantity::Position), has(Quantity::Velocity)) {
+    let has_wrong = |quantity: Quantity| entries.iter().any(|entry| entry.quantity == quantity);
+    let quantity = match (has_wrong(Quantity::Position), has_wrong(Quantity::Velocity)) {
         (true, false) => Quantity::Position,
         (false, true) => Quantity::Velocity,
         _ => return None,

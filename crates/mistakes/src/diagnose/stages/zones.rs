@@ -172,14 +172,14 @@ impl<'a> FirstRound<'a> {
         }
         let mut stopped = self.middle.clone();
         move_group(self.scene, zone, true, &self.facts.before, &mut stopped);
-        let stops = zone.must_stop(self.scene);
-        if !stops && self.are_at(&stopped, all) {
+        let must_stop = zone.must_stop(self.scene);
+        if !must_stop && self.are_at(&stopped, all) {
             return ZoneResult::Wrong(WrongZones::Stop);
         }
         if let Some(fate) = self.find_other_zones(zone) {
             return fate;
         }
-        if stops { self.stop_result(zone, &stopped) } else { self.motion_result(zone) }
+        if must_stop { self.stop_result(zone, &stopped) } else { self.motion_result(zone) }
     }
 
     /// Returns the fault in the choice of zones, if other zones, each moved correctly, explain the states of the zone's
@@ -280,13 +280,14 @@ impl<'a> FirstRound<'a> {
         let is_back = |particle: &usize| {
             are_near(vector_at(&self.end.positions, *particle), vector_at(&stopped.positions, *particle))
         };
-        let rests = |particle: &usize| length(vector_at(&self.end.velocities, *particle)) <= ROUND_OFF_LIMIT;
+        let is_at_rest = |particle: &usize| length(vector_at(&self.end.velocities, *particle)) <= ROUND_OFF_LIMIT;
         let all = || zone.particles.iter();
         if all().all(is_back) {
             ZoneResult::Wrong(WrongZones::KeepVelocities)
-        } else if all().all(rests) {
+        } else if all().all(is_at_rest) {
             ZoneResult::Wrong(WrongZones::KeepPositions)
-        } else if all().any(|particle| is_back(particle) && rests(particle) && !self.is_at(self.middle, *particle)) {
+        } else if all().any(|particle| is_back(particle) && is_at_rest(particle) && !self.is_at(self.middle, *particle))
+        {
             ZoneResult::Wrong(WrongZones::PartlyStopped)
         } else {
             ZoneResult::Bent
@@ -299,8 +300,8 @@ impl<'a> FirstRound<'a> {
         };
         let pairs = zone.particles.iter().flat_map(|&one| zone.particles.iter().map(move |&two| (one, two)));
         let is_rigid = pairs.into_iter().all(|(one, two)| {
-            let (was, is) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
-            (was - is).abs() <= ROUND_OFF_LIMIT * (1.0 + was)
+            let (before, after) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
+            (before - after).abs() <= ROUND_OFF_LIMIT * (1.0 + before)
         });
         if is_rigid { ZoneResult::Rigid } else { ZoneResult::Bent }
     }

@@ -207,16 +207,16 @@ fn row_of(y: f64, density: f64) -> i64 {
 /// Sorts entries. Nearly sorted lists take one comparison per entry, others are sorted by the standard library.
 pub fn sort_nearly_sorted<T: Copy>(entries: &mut [T], compare: impl Fn(&T, &T) -> Ordering) {
     // In a large scene a few percent of the entries change rows in a step, and pass all entries between.
-    let mut moves = 8 * entries.len();
+    let mut remaining_moves = 8 * entries.len();
     for index in 1..entries.len() {
         let (entry, mut slot) = (entries[index], index);
         while slot > 0 && compare(&entry, &entries[slot - 1]).is_lt() {
-            if moves == 0 {
+            if remaining_moves == 0 {
                 entries[slot] = entry;
                 return entries.sort_unstable_by(compare);
             }
             entries[slot] = entries[slot - 1];
-            (slot, moves) = (slot - 1, moves - 1);
+            (slot, remaining_moves) = (slot - 1, remaining_moves - 1);
         }
         entries[slot] = entry;
     }

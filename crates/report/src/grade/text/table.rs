@@ -79,9 +79,9 @@ pub fn shorten_name(name: &str) -> String {
         letters
             .take_while(|letter| {
                 let wide = count_columns(&letter.to_string());
-                let fits = wide <= room;
+                let is_within = wide <= room;
                 room = room.saturating_sub(wide);
-                fits
+                is_within
             })
             .copied()
             .collect()

@@ -37,12 +37,12 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
         });
     }
     if example.is_some() {
-        let ends = if is_edge {
+        let numbers = if is_edge {
             "1 is the particle, 2 and 3 are the edge's ends"
         } else {
             "1 is the first particle, 2 the second"
         };
-        parts.push(ends.to_owned());
+        parts.push(numbers.to_owned());
     } else if lines.iter().any(|line| line.contains("(p-x)") || line.contains("dx.n")) {
         parts.push("x is the particle's position at the start of the step, dx its displacement".to_owned());
         parts.push("p and n are the half-plane's point and normal".to_owned());

@@ -134,20 +134,20 @@ fn describe_unfinished(keys: &[String]) -> String {
 /// Returns advice about where to look for a mistake in a step without collisions. The advice depends on words in the
 /// mistake's key.
 fn describe_step_area(key: &str) -> &'static str {
-    let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
+    let contains_any = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {
-        () if has(&["fixed"]) => "Look at how a step treats fixed particles.",
-        () if has(&["-hx", "-hv", "matrix", "linear-mass", "implicit-mass"]) => {
+        () if contains_any(&["fixed"]) => "Look at how a step treats fixed particles.",
+        () if contains_any(&["-hx", "-hv", "matrix", "linear-mass", "implicit-mass"]) => {
             "Look at how the system matrix is built."
         }
-        () if has(&["-right", "-momentum"]) => "Look at how the right-hand side of the system is built.",
-        () if has(&["newton"]) || key.starts_with("implicit") => {
+        () if contains_any(&["-right", "-momentum"]) => "Look at how the right-hand side of the system is built.",
+        () if contains_any(&["newton"]) || key.starts_with("implicit") => {
             "Look at Newton's method: the values that each iteration uses, and when it ends."
         }
         () if key.starts_with("linear") => {
             "Look at where forces and matrix are computed, and at how the solution of the system is applied."
         }
-        () if has(&["-velocity", "behind"]) => Area::Integrator.advice(),
+        () if contains_any(&["-velocity", "behind"]) => Area::Integrator.advice(),
         () => "Look at how forces change velocities, and velocities change positions.",
     }
 }

@@ -144,7 +144,7 @@ impl Admin {
                disabled_at = NULL
             RETURNING id";
         let account = transaction.one(statement, values![login, name, is_admin]).await?.int("id")?;
-        if before.is_some_and(|was| was.is_admin != is_admin) {
+        if before.is_some_and(|account_before| account_before.is_admin != is_admin) {
             identity::end_all_access(&mut transaction, account).await?;
         }
         let link = identity::new_link(&mut transaction, account, Some(self.account.id), SignInMethod::Own).await?;

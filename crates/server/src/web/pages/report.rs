@@ -24,8 +24,8 @@ fn strip_head(report: &str) -> Option<&str> {
     let (_, body) = body.split_once("</h1>\n")?;
     let is_own = foot.contains(concat!("Written by fosssim-oracle ", env!("CARGO_PKG_VERSION"), ". "));
     let is_foreign = |tag: &str| {
-        let begins = |name: &&str| tag.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
-        FORBIDDEN_ELEMENTS.iter().any(begins)
+        let is_prefix = |name: &&str| tag.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
+        FORBIDDEN_ELEMENTS.iter().any(is_prefix)
     };
     (is_own && !body.split('<').any(is_foreign)).then_some(body)
 }

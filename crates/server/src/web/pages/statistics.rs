@@ -57,8 +57,8 @@ pub(super) struct Statistics {
 impl Statistics {
     pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
         let count = |part: &str| standings.iter().filter(|standing| is_in_section(standing, part)).count();
-        let ran = standings.iter().filter(|standing| !is_in_section(standing, "never-ran"));
-        let mut shares: Vec<f64> = ran.filter_map(|standing| points_share(standing.counts.as_ref()?)).collect();
+        let judged = standings.iter().filter(|standing| !is_in_section(standing, "never-ran"));
+        let mut shares: Vec<f64> = judged.filter_map(|standing| points_share(standing.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
         let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
