@@ -12,6 +12,10 @@ use super::{
 /// The maximum change of velocity by the impulses of one round, in programs that limit it (length per time).
 const MAX_IMPULSE: f64 = 0.5;
 
+/// The number of rounds after which a step with a guard is stopped. A scene may allow billions of rounds, and some
+/// mistakes repeat them without a polynomial that the guard would see.
+const MAX_GUARDED_ROUNDS: i32 = 10_000;
+
 /// Applies impulses until a pass finds no contact, or until `max_iterations` rounds are over. Returns whether a pass
 /// found no contact. `state` is the prediction at the beginning, and the result at the end.
 pub fn apply_rounds(
@@ -33,6 +37,7 @@ pub fn apply_rounds(
     let limit = round_limit(world, max_iterations);
     let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
+        stop_endless_rounds(rounds, log)?;
         let is_old = student.makes(Mistake::ImpulsesDetectPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
         let is_repeated = rounds > 0 && student.makes(Mistake::ImpulsesDetectOnce);
@@ -51,9 +56,8 @@ pub fn apply_rounds(
             if student.makes(Mistake::ImpulsesVelocityRestored) {
                 state.v.clone_from(&prediction.v);
             }
-            let fails = student.mistake_in(&[Area::ImpulseLoop]);
-            let succeeds = !matches!(fails, Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted));
-            return Ok(succeeds);
+            let mistake = student.mistake_in(&[Area::ImpulseLoop]);
+            return Ok(!matches!(mistake, Some(Mistake::ImpulsesAlwaysFail | Mistake::ImpulsesInverted)));
         }
         if is_as_before && student.makes(Mistake::ImpulsesSameCountFails) {
             return Ok(false);
@@ -93,6 +97,12 @@ pub fn apply_rounds(
         _ => {}
     }
     Ok(false)
+}
+
+/// Fails if a step with a guard has had too many rounds.
+fn stop_endless_rounds(rounds: i32, log: &StepLog) -> Result<(), StepFailure> {
+    let is_over = log.guard.is_some() && rounds > MAX_GUARDED_ROUNDS;
+    if is_over { Err(StepFailure::Stopped) } else { Ok(()) }
 }
 
 /// Returns the result of a program that ends before its first round, or `None` if it continues.
@@ -204,5 +214,25 @@ fn limit_velocity_changes(world: &World, before: &State, state: &mut State) {
             let moved = vector_at(&state.x, particle) - vector_at(&before.x, particle);
             set_vector(&mut state.x, particle, vector_at(&before.x, particle) + share * moved);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Student;
+
+    #[test]
+    fn rounds_that_compute_no_polynomial_end_with_a_guard() {
+        let text = br#"<scene><duration time="0.1"/><integrator type="symplectic-euler" dt="0.1"/>
+            <collision type="hybrid" COR="1" maxiters="2147483647" k="0" thickness="0"/>
+            <particle m="1" px="0" py="0" vx="1" vy="0" fixed="0" radius="0.5"/>
+            <particle m="1" px="1.05" py="0" vx="-1" vy="0" fixed="0" radius="0.5"/></scene>"#;
+        let scene = fosssim_model::scene::read("two balls", text).expect("a scene").scene;
+        let world = World::new(scene, Student::new(Some(Mistake::ImpulsesDetectOnce)));
+        let guard = |_: usize, _: &[f64]| true;
+        let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
+        let result = super::super::step(&world, &mut world.initial_state(), &mut log, &mut |_, _| ());
+        assert!(matches!(result, Err(StepFailure::Stopped)), "{result:?}");
     }
 }

@@ -14,7 +14,7 @@ pub enum StepFailure {
     #[error("no addHessXToTotal defined for VortexForce")]
     VortexHessian,
     /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller has enough
-    /// information. A step with a guard also stops if it has too many impact zones.
+    /// information. A step with a guard also stops after too many rounds or impact zones.
     #[error("the caller rejected a polynomial, so the step was stopped")]
     Stopped,
 }
