@@ -39,11 +39,13 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
         let mut corner = above[0];
         above[0] += GAP_COST;
         for column in 0..wide {
-            let across = corner + if is_match(head + row, head + column) { 0 } else { MISMATCH_COST };
-            let (out, put) = (above[column + 1] + GAP_COST, above[column] + GAP_COST);
+            let match_cost = corner + if is_match(head + row, head + column) { 0 } else { MISMATCH_COST };
+            let (delete_cost, insert_cost) = (above[column + 1] + GAP_COST, above[column] + GAP_COST);
             corner = above[column + 1];
             (above[column + 1], cells[row * wide + column]) =
-                [(across, MATCH), (out, DELETE), (put, INSERT)].into_iter().min_by_key(|(cost, _)| *cost)?;
+                [(match_cost, MATCH), (delete_cost, DELETE), (insert_cost, INSERT)]
+                    .into_iter()
+                    .min_by_key(|(cost, _)| *cost)?;
         }
     }
     let (mut row, mut column) = (tall, wide);

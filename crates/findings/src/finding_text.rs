@@ -164,13 +164,13 @@ impl Display for VectorDifference {
         let power =
             |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
         // The distance has two digits, and each vector has at least six.
-        let short = |vector: [f64; 2]| {
+        let truncate = |vector: [f64; 2]| {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let minimum = power(size).map(|power| 5 - power);
             let decimals = power(distance).map(|power| 1 - power).max(minimum).unwrap_or(0);
             VectorText(vector.map(|value| truncate_to_places(value, decimals, power(value))))
         };
-        write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
+        write!(f, "{}, expected {}, distance ", truncate([ax, ay]), truncate([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
         if (1e-4..1e6).contains(&distance) { write!(f, "{rounded}") } else { write!(f, "{rounded:e}") }
     }

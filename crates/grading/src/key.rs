@@ -63,19 +63,20 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const MIN_BUILD_ID_BYTES: usize = 16;
     let mut start = Vec::new();
     file.take(SCANNED_BYTES).read_to_end(&mut start).ok()?;
-    let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
-    let long =
+    let read_u32 = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
+    let read_u64 =
         |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
     // The file must be a 64-bit, little-endian ELF file.
     if !start.starts_with(b"\x7fELF\x02\x01") {
         return None;
     }
-    let headers = start.get(long(&start, 32)?..)?;
+    let headers = start.get(read_u64(&start, 32)?..)?;
     let count = usize::from(u16::from_le_bytes(start.get(56..58)?.try_into().ok()?));
-    for header in headers.chunks_exact(56).take(count).filter(|header| word(header, 0) == Some(MAX_NOTES)) {
-        let (from, length) = (long(header, 8)?, long(header, 32)?);
+    for header in headers.chunks_exact(56).take(count).filter(|header| read_u32(header, 0) == Some(MAX_NOTES)) {
+        let (from, length) = (read_u64(header, 8)?, read_u64(header, 32)?);
         let mut notes = start.get(from..from.checked_add(length)?)?;
-        while let (Some(owner), Some(length), Some(kind)) = (word(notes, 0), word(notes, 4), word(notes, 8)) {
+        while let (Some(owner), Some(length), Some(kind)) = (read_u32(notes, 0), read_u32(notes, 4), read_u32(notes, 8))
+        {
             let (owner, length) = (usize::try_from(owner).ok()?, usize::try_from(length).ok()?);
             let body = 12 + owner.next_multiple_of(4);
             let id = notes.get(body..body.checked_add(length)?)?;

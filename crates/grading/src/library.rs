@@ -42,8 +42,9 @@ pub fn find_scene(name: &str) -> Option<&'static [u8]> {
 
 /// Returns the generated scene with this name or full name.
 fn find_generated(name: &str) -> Option<&'static GeneratedScene> {
-    let short = name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
-    TIMING_SCENES.iter().find(|made| made.name == short)
+    let short_name =
+        name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
+    TIMING_SCENES.iter().find(|made| made.name == short_name)
 }
 
 /// Returns the recording of a scene, compressed with zstd; `None` if there is none.

@@ -210,16 +210,16 @@ mod tests {
     #[test]
     fn a_part_of_a_suite_keeps_each_scenes_worth_and_says_that_it_is_a_part() {
         let plan = || load_suite(find_built_in_suite("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
-        let (whole, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
+        let (whole_suite, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
         let part = plan().filter_scenes(|scene| scene == name);
-        let all = whole.scenes().count();
+        let all = whole_suite.scenes().count();
         assert_eq!((part.groups.len(), part.scenes().count()), (1, 1));
-        let group = whole.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
+        let group = whole_suite.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
         #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
         let worth = group.marking.points / group.scenes.len() as f64;
         assert!((part.max_points() - worth).abs() < 1e-12);
-        assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole.name));
-        assert_eq!(plan().filter_scenes(|_| true).name, whole.name);
+        assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole_suite.name));
+        assert_eq!(plan().filter_scenes(|_| true).name, whole_suite.name);
     }
 
     #[test]

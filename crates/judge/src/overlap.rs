@@ -93,8 +93,8 @@ impl Observer for OverlapObserver<'_> {
                 (Some(alpha), x2 + alpha * edge_vector - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
             }
             PairMotion::HalfPlane { center, radius, point, normal } => {
-                let out = (1.0 / length(normal)) * normal;
-                (None, (point - end(center)).dot(&out) * out, radius, Vec2::zeros())
+                let direction = (1.0 / length(normal)) * normal;
+                (None, (point - end(center)).dot(&direction) * direction, radius, Vec2::zeros())
             }
         };
         let velocities = [vector_at(velocities, first), other];

@@ -153,21 +153,22 @@ impl Decomposition<'_> {
             *multiplier *= reciprocal;
         }
         let may_skip = may_skip & multipliers.iter().fold(true, |may, multiplier| may & multiplier.is_finite());
-        let (whole, single) = multipliers.split_at(multipliers.len() / width * width);
+        let (in_lane_multipliers, single_multipliers) = multipliers.split_at(multipliers.len() / width * width);
         for (column, largest) in rest.chunks_exact_mut(n).zip(&mut self.moduli[k + 1..]) {
             let Some((top, below)) = column[k..].split_first_mut() else { return };
             if may_skip && *top == 0.0 {
                 continue;
             }
             let (tops, mut moduli) = (Lanes::splat(simd, *top), Lanes::splat(simd, 0.0));
-            let (in_lanes, alone) = below.split_at_mut(whole.len());
-            for (entries, multipliers) in in_lanes.chunks_exact_mut(width).zip(whole.chunks_exact(width)) {
+            let (in_lanes, single_entries) = below.split_at_mut(in_lane_multipliers.len());
+            for (entries, multipliers) in in_lanes.chunks_exact_mut(width).zip(in_lane_multipliers.chunks_exact(width))
+            {
                 let difference = Lanes::load(simd, entries) - Lanes::load(simd, multipliers) * tops;
                 difference.store(entries);
                 moduli = difference.abs().max(moduli);
             }
             *largest = find_largest_modulus(moduli, in_lanes);
-            for (entry, multiplier) in alone.iter_mut().zip(single) {
+            for (entry, multiplier) in single_entries.iter_mut().zip(single_multipliers) {
                 *entry -= *multiplier * *top;
                 *largest = max_modulus(*largest, *entry);
             }
@@ -185,12 +186,12 @@ struct Pivot {
 /// Returns the largest absolute value of a column's entries. NaN is ignored.
 #[inline(always)]
 fn largest_modulus<S: Simd>(simd: S, entries: &[f64]) -> f64 {
-    let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
+    let (in_lanes, single_entries) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
     let mut moduli = Lanes::splat(simd, 0.0);
     for entries in in_lanes.chunks_exact(Lanes::<S>::COUNT) {
         moduli = Lanes::load(simd, entries).abs().max(moduli);
     }
-    alone.iter().fold(find_largest_modulus(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
+    single_entries.iter().fold(find_largest_modulus(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
 }
 
 /// Returns the largest absolute value of the entries. With some instructions the larger of a number and NaN is NaN.

@@ -36,11 +36,11 @@ impl ClipRectangle {
         let at = |time: f64| [from[0] + time * way[0], from[1] + time * way[1]];
         let ends = [if enter > 0.0 { at(enter) } else { from }, if leave < 1.0 { at(leave) } else { to }];
         // A line is not drawn if it is so long that its points have no digits left inside the picture.
-        let near = |[x, y]: Point| {
+        let is_near = |[x, y]: Point| {
             let room = 1.0 + self.high[0] - self.low[0] + self.high[1] - self.low[1];
             x >= self.low[0] - room && x <= self.high[0] + room && y >= self.low[1] - room && y <= self.high[1] + room
         };
-        ends.iter().all(|&end| near(end)).then_some(ends)
+        ends.iter().all(|&end| is_near(end)).then_some(ends)
     }
 
     /// Returns the corners of the part of the rectangle where `inside`, a linear function of the position, is not

@@ -227,13 +227,13 @@ impl Painter {
         // The visible part of the boundary, around its point nearest to the middle of the picture.
         let size = self.size();
         let middle = [0.5 * f64::from(size.width()), 0.5 * f64::from(size.height())];
-        let off = above(middle);
-        let nearest_point = [middle[0] - off * unit[0], middle[1] - off * unit[1]];
+        let distance = above(middle);
+        let nearest_point = [middle[0] - distance * unit[0], middle[1] - distance * unit[1]];
         let reach = f64::from(size.width()) + f64::from(size.height());
-        let along = [-unit[1] * reach, unit[0] * reach];
+        let offset = [-unit[1] * reach, unit[0] * reach];
         let ends = [
-            [nearest_point[0] - along[0], nearest_point[1] - along[1]],
-            [nearest_point[0] + along[0], nearest_point[1] + along[1]],
+            [nearest_point[0] - offset[0], nearest_point[1] - offset[1]],
+            [nearest_point[0] + offset[0], nearest_point[1] + offset[1]],
         ];
         if let Some(ends) = self.frame(4.0).clip_line(ends[0], ends[1]) {
             shapes.push(Shape::Line { points: ends.to_vec(), width: 2.0, paint: Paint::Solid(color) });

@@ -8,7 +8,7 @@
 /// assert_eq!(fosssim_report::formula::to_mathematical_signs(line), "t²: −4 e h, with e = Δx₂₁·x₂₁.");
 /// ```
 pub fn to_mathematical_signs(line: &str) -> String {
-    let mut out = String::with_capacity(line.len());
+    let mut text = String::with_capacity(line.len());
     let mut rest = line;
     while let Some(first) = rest.chars().next() {
         let done = &line[..line.len() - rest.len()];
@@ -21,10 +21,10 @@ pub fn to_mathematical_signs(line: &str) -> String {
             '-' if is_minus(done, &rest[1..]) => ("−".to_owned(), 1),
             other => (other.to_string(), other.len_utf8()),
         };
-        out += &sign;
+        text += &sign;
         rest = &rest[length..];
     }
-    out
+    text
 }
 
 /// Writes a name in a formula with subscript digits and Greek letters.

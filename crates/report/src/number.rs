@@ -14,8 +14,8 @@ pub fn format_exact(value: f64) -> String {
 /// few roundings, or has few digits anyway.
 fn format_fraction(value: f64) -> Option<String> {
     let is_near = |denominator: &f64| {
-        let (scaled, whole) = (value * denominator, (value * denominator).round());
-        (1.0..1000.0).contains(&whole.abs()) && (scaled - whole).abs() <= 4.0 * f64::EPSILON * whole.abs()
+        let (scaled, rounded) = (value * denominator, (value * denominator).round());
+        (1.0..1000.0).contains(&rounded.abs()) && (scaled - rounded).abs() <= 4.0 * f64::EPSILON * rounded.abs()
     };
     let denominator = (2_u32..60).map(f64::from).find(is_near).filter(|_| value.to_string().len() > 9)?;
     Some(format!("{}/{denominator}", (value * denominator).round()))

@@ -311,7 +311,7 @@ fn active_layers(reports: &[LayerReport]) -> ActiveLayers {
 
 /// Returns reports for a run that was never started. All layers are inactive in them.
 pub(super) fn no_layers() -> Arc<[LayerReport]> {
-    let off = |layer| LayerReport {
+    let inactive_report = |layer| LayerReport {
         layer,
         active: matches!(layer, Layer::Limits | Layer::Reaper),
         required: false,
@@ -322,7 +322,7 @@ pub(super) fn no_layers() -> Arc<[LayerReport]> {
         },
         remedy: None,
     };
-    Layer::ALL.map(off).into()
+    Layer::ALL.map(inactive_report).into()
 }
 
 #[cfg(test)]

@@ -116,11 +116,11 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
     let (events, end) = simulate(scene).unwrap_or_default();
     let hits = events.hits.values().sum::<u64>() as usize;
-    let long: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
+    let extra_digits: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
     let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
     let (unclear, oddities) = (usize::from(!is_clear(scene)), count_oddities(scene, assignment));
-    ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
+    ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + extra_digits], magnitude)
 }
 
 /// Returns the number of warnings about a scene, and of its parts that programs of the assignment do not support. For a

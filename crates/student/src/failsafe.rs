@@ -267,20 +267,20 @@ impl<'a> RigidBody<'a> {
                 Some(Mistake::FailsafeTurnsEnd) => vector_at(&state.x, particle) - self.center - self.shift,
                 _ => start - self.center,
             };
-            let across = match self.mistake() {
+            let turned_arm = match self.mistake() {
                 Some(Mistake::FailsafePerpendicular) => Vec2::new(arm.y, arm.x),
                 _ => Vec2::new(-arm.y, arm.x),
             };
             let x = match self.mistake() {
-                Some(Mistake::FailsafeNoCenter) => self.shift + cosine * arm + sine * across,
-                Some(Mistake::FailsafeShiftTwice) => self.center + 2.0 * self.shift + cosine * arm + sine * across,
+                Some(Mistake::FailsafeNoCenter) => self.shift + cosine * arm + sine * turned_arm,
+                Some(Mistake::FailsafeShiftTwice) => self.center + 2.0 * self.shift + cosine * arm + sine * turned_arm,
                 Some(Mistake::FailsafeRotationMatrix) => {
                     let turned = Vec2::new(cosine * arm.x - sine * arm.y, sine * arm.x + cosine * arm.y);
                     self.center + (self.shift + turned)
                 }
                 _ => {
                     let to = self.center + self.shift;
-                    student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
+                    student.add_scaled(student.add_scaled(to, cosine, arm), sine, turned_arm)
                 }
             };
             let (h, before) = (self.world.scene.time_step, vector_at(&state.v, particle));

@@ -123,8 +123,8 @@ fn add_vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
     let d = vector_at(x, second) - vector_at(x, first);
     let r = length(d);
-    let along = strength * divide(d, r);
-    let around = Vec2::new(-along.y, along.x) - (vector_at(v, second) - vector_at(v, first));
+    let scaled_direction = strength * divide(d, r);
+    let around = Vec2::new(-scaled_direction.y, scaled_direction.x) - (vector_at(v, second) - vector_at(v, first));
     let push = -(coupling * divide(around, r * r));
     subtract(g, first, push);
     add(g, second, push);

@@ -181,10 +181,11 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let stretch = if is_positive { stretch.abs() } else { stretch };
     let inverse = if makes(StepMistake::JacobianElasticStrain) { 1.0 / rest_length } else { 1.0 / l };
     let removed = if makes(StepMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
-    let across = world.weight(Term::JacobianElasticAcross, l);
-    let along = world.weight(Term::JacobianElasticAlong, l);
+    let across_weight = world.weight(Term::JacobianElasticAcross, l);
+    let along_weight = world.weight(Term::JacobianElasticAlong, l);
     build_block(|r, c| {
-        (along * outer[r][c] + across * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness
+        (along_weight * outer[r][c] + across_weight * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse))
+            * stiffness
     })
 }
 

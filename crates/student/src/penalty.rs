@@ -31,9 +31,9 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
         return PenaltyPairs::new(&world.scene, layer.h, layer.detection)
             .visit_pairs(x, |pair| force.add(pair.kind, (pair.first as usize, pair.second as usize)));
     }
-    let near = NearPairSearch::new(world, layer.h, x, v);
+    let near_pairs = NearPairSearch::new(world, layer.h, x, v);
     let mut visit = |kind: PairKind, (one, other): (usize, usize)| {
-        for _ in 0..near.pair_count(kind, one, other) {
+        for _ in 0..near_pairs.pair_count(kind, one, other) {
             force.add(kind, (one, other));
             if kind == PairKind::ParticleParticle && student.makes(StepMistake::PenaltyBothOrders) {
                 force.add(kind, (other, one));

@@ -144,9 +144,9 @@ impl ProgramUnderTest {
 
     /// Runs the program on scenes; `None` if the user interrupted it.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
-        let long = self.run_limits();
+        let full_limits = self.run_limits();
         // After a run has ended at a limit, these shorter limits apply.
-        let short = shorten_limits(&long);
+        let short_limits = shorten_limits(&full_limits);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {
@@ -154,7 +154,7 @@ impl ProgramUnderTest {
                 break;
             }
             bar.next_run(&task.name);
-            let limits = if stopped == 0 { &long } else { &short };
+            let limits = if stopped == 0 { &full_limits } else { &short_limits };
             let run = self.runner(limits).collect_trace(&self.program, task, MAX_KEPT_BYTES);
             let (trace, outcome) = run.map_err(anyhow::Error::msg)?;
             if self.cancellation.is_canceled() {

@@ -43,9 +43,9 @@ pub(super) fn probe(
     decisions: &[FollowedDecision],
 ) -> Sensitivity {
     let zeros = vec![0.0; records.before.positions.len()];
-    let still = State { positions: zeros.clone(), velocities: zeros };
+    let zero_state = State { positions: zeros.clone(), velocities: zeros };
     let mut sensitivity =
-        Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped_decisions: Vec::new() };
+        Sensitivity { passes: Vec::new(), mid: zero_state.clone(), end: zero_state, flipped_decisions: Vec::new() };
     let Some(base) = run_probe(context, simulation, records, decisions, 0) else { return sensitivity };
     sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
     for seed in 1..=PERTURBED_RUNS {

@@ -27,14 +27,14 @@ pub(super) fn is_never_positive(coefficients: &[f64]) -> bool {
 /// inputs are the coefficients, highest power first, and the reciprocals of the binomial coefficients.
 #[inline(always)]
 fn is_negative_on_unit<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
-    let mut near = coefficients[0].abs();
-    let mut size = near;
+    let mut near_limit = coefficients[0].abs();
+    let mut size = near_limit;
     let mut zeros_are_near = true;
     for coefficient in &coefficients[1..] {
-        near *= BERNSTEIN_NEAR_LIMIT;
+        near_limit *= BERNSTEIN_NEAR_LIMIT;
         let modulus = coefficient.abs();
         size += modulus;
-        zeros_are_near &= modulus <= near;
+        zeros_are_near &= modulus <= near_limit;
     }
     let mut control = [0.0; LENGTH];
     for i in 0..LENGTH {

@@ -25,8 +25,8 @@ pub fn is_line_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.splat_like(0.0), is_small(a));
     // Without its leading coefficient, the polynomial is empty or a constant that is not positive.
     let constant = small & b.is_below(MIN_LEADING_COEFFICIENT);
-    let near = a.lt(zero) & b.le(zero) & (LINE_NEAR_LIMIT * a).le(b);
-    let known = constant | (!small & (b.is_zero() | near));
+    let has_near_zero = a.lt(zero) & b.le(zero) & (LINE_NEAR_LIMIT * a).le(b);
+    let known = constant | (!small & (b.is_zero() | has_near_zero));
     // The line is positive before its zero at a positive time. Only rounding could hide this.
     let falls = a.lt(zero) & zero.lt(b);
     let open = !(small | known | falls);
@@ -50,8 +50,8 @@ fn is_line_excluded_exactly<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
 pub fn is_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
     let vanishing = b.is_zero() & c.is_zero();
-    let whole = (vanishing | is_parabola_excluded(a, b, c)) & !small;
-    if small.any() { whole | (small & is_line_never_positive(b, c)) } else { whole }
+    let parabola_excluded = (vanishing | is_parabola_excluded(a, b, c)) & !small;
+    if small.any() { parabola_excluded | (small & is_line_never_positive(b, c)) } else { parabola_excluded }
 }
 
 /// Returns the lanes in which a parabola is provably not positive within the step, because it has no real zero or is

@@ -151,10 +151,10 @@ impl Problem {
         };
         let rest = 1.0 - first;
         let mut best = slack_at(1.0);
-        let mut near = 0.5;
+        let mut fraction = 0.5;
         for step in 1..16_u8 {
-            near *= 0.25;
-            best = best.max(slack_at(first + rest * (f64::from(step) / 16.0))).max(slack_at(first + rest * near));
+            fraction *= 0.25;
+            best = best.max(slack_at(first + rest * (f64::from(step) / 16.0))).max(slack_at(first + rest * fraction));
         }
         best
     }

@@ -44,8 +44,8 @@ impl Overlap<'_> {
         text += &render_motion(&study.motion, number, style);
         text += &heading("At the end of the step");
         if let Some(alpha) = study.alpha {
-            let along = "the nearest point of the edge, from 0 at its first end to 1 at its second";
-            text += &format!("  alpha {}: {along}\n", number(alpha));
+            let meaning = "the nearest point of the edge, from 0 at its first end to 1 at its second";
+            text += &format!("  alpha {}: {meaning}\n", number(alpha));
         }
         let (overlap, approach) = (self.overlaps(), self.approaches());
         text +=

@@ -22,7 +22,7 @@ pub(crate) struct SceneShare {
 /// same program.
 pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(TextStyle::Strong, "Class"), render_head(grades));
-    let (scenes, whole) = find_hardest(grades);
+    let (scenes, fully_accepted) = find_hardest(grades);
     if !scenes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scenes with the fewest correct answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
@@ -38,8 +38,8 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
         if scenes.len() > max_rows {
             let _ = writeln!(text, "  and {}", format_count((scenes.len() - max_rows) as u64, "more scene"));
         }
-        if whole > 0 {
-            let _ = writeln!(text, "  {} accepted for all submissions", format_count(whole as u64, "scene"));
+        if fully_accepted > 0 {
+            let _ = writeln!(text, "  {} accepted for all submissions", format_count(fully_accepted as u64, "scene"));
         }
     }
     let mistakes = find_frequent(grades);
@@ -165,10 +165,10 @@ pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize)
         }
     }
     let judged = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
-    let (whole, mut wrong): (Vec<_>, Vec<_>) = judged.partition(|(_, share)| share.accepted == share.run);
+    let (fully_accepted, mut wrong): (Vec<_>, Vec<_>) = judged.partition(|(_, share)| share.accepted == share.run);
     // Shares are compared as fractions. The sort is stable, so that equal shares stay in the suite's order.
     wrong.sort_by(|(_, a), (_, b)| (a.accepted * b.run).cmp(&(b.accepted * a.run)));
-    (wrong, whole.len())
+    (wrong, fully_accepted.len())
 }
 
 /// A likely mistake, and the submissions that make it, as indices into the grades.

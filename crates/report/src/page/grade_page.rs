@@ -217,13 +217,13 @@ impl<'a> Article<'a> {
     fn new(scene: &'a SceneGrade, card: Option<&Card>, room: CardDetail, room_of_outputs: &mut usize) -> Self {
         let key = scene_key(&scene.scene);
         // A detail is left out if the card already shows it together with the values.
-        let is_shown = room != CardDetail::Words && card.is_some_and(Card::has_values);
+        let is_shown = room != CardDetail::Text && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.corrected_explanations, is_shown, describe_wrong_state(scene).as_deref());
         let no_room = |what: &str| format!("<p class=\"hint\">This page has no space for {what}.</p>\n");
         let shown = match (card, room) {
             (None, _) => mistakes,
-            (Some(card), CardDetail::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
+            (Some(card), CardDetail::Text) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
             (Some(card), CardDetail::Pictures) if card.sizes().1 > 0 => {
                 no_room("the motion") + &card.render_with_mistakes(&key, &mistakes)
             }

@@ -65,15 +65,15 @@ pub fn polynomials(motion: &PairMotion) -> Vec<Vec<f64>> {
         }
         PairMotion::Edge { center, ends: [first, second], radii } => {
             let [x1, x2, x3] = [center, first, second].map(|body| move |t| body.position_at(t));
-            let (along, beside) = (|t| x3(t) - x2(t), |t| x1(t) - x2(t));
+            let (edge, arm) = (|t| x3(t) - x2(t), |t| x1(t) - x2(t));
             let square = (radii[0] + radii[1]) * (radii[0] + radii[1]);
             let overlap = |t| {
-                let cross = along(t).x * beside(t).y - along(t).y * beside(t).x;
-                square * along(t).dot(&along(t)) - cross * cross
+                let cross = edge(t).x * arm(t).y - edge(t).y * arm(t).x;
+                square * edge(t).dot(&edge(t)) - cross * cross
             };
             vec![
                 interpolate(4, overlap),
-                interpolate(2, |t| beside(t).dot(&along(t))),
+                interpolate(2, |t| arm(t).dot(&edge(t))),
                 interpolate(2, |t| (x1(t) - x3(t)).dot(&(x2(t) - x3(t)))),
             ]
         }

@@ -60,8 +60,8 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         Some(Mistake::ExtendedPrecision) => arithmetic::vector_to_edge::<WideNumber>(bodies, t),
         Some(Mistake::FusedArithmetic) => arithmetic::vector_to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
-            let across = Vec2::new(-edge.y, edge.x);
-            (two.position_at(t) - one.position_at(t)).dot(&across) / edge.dot(&edge) * across
+            let edge_normal = Vec2::new(-edge.y, edge.x);
+            (two.position_at(t) - one.position_at(t)).dot(&edge_normal) / edge.dot(&edge) * edge_normal
         }
         _ => two.position_at(t) + alpha * edge - one.start - t * one.shift,
     }

@@ -132,8 +132,9 @@ impl<'a> PlacedPair<'a> {
         let [first, second] = self.indices();
         let own = vector_at(x, first);
         if let Some(edge) = self.edge() {
-            let (from, along) = (vector_at(x, edge.first), vector_at(x, edge.second) - vector_at(x, edge.first));
-            return from + ((own - from).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along;
+            let (from, edge_vector) = (vector_at(x, edge.first), vector_at(x, edge.second) - vector_at(x, edge.first));
+            return from
+                + ((own - from).dot(&edge_vector) / edge_vector.dot(&edge_vector)).clamp(0.0, 1.0) * edge_vector;
         }
         self.half_plane().map_or_else(
             || vector_at(x, second),

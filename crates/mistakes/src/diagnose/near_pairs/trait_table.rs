@@ -242,9 +242,10 @@ fn corners(pair: &PlacedPair<'_>) -> [Vec2; 2] {
 
 fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     let [one, other] = pair.boxes();
-    let across = 1 - axis;
+    let other_axis = 1 - axis;
     let lower = if one[0][axis] <= other[0][axis] { one } else { other };
-    pair.boxes_between(axis).any(|body| body[0][across] > lower[1][across] || lower[0][across] > body[1][across])
+    pair.boxes_between(axis)
+        .any(|body| body[0][other_axis] > lower[1][other_axis] || lower[0][other_axis] > body[1][other_axis])
 }
 
 /// Returns the overlap of two boxes on an axis.

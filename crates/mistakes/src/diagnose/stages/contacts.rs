@@ -250,12 +250,13 @@ impl ContactStage {
             return None;
         }
         let listed: Vec<(PairKind, f64)> = self.vectors.iter().map(|(kind, ..)| (*kind, 0.0)).collect();
-        let along: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
-        let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
-            let along = theirs.dot(ours) / ours.dot(ours) * *ours;
-            length(*theirs - along) > RATIO_TOLERANCE * length(*theirs)
+        let vector_ratios: Vec<f64> =
+            self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
+        let is_off_direction = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
+            let projection = theirs.dot(ours) / ours.dot(ours) * *ours;
+            length(*theirs - projection) > RATIO_TOLERANCE * length(*theirs)
         };
-        let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
+        let is_perpendicular = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let size = length(*ours) * length(*theirs);
             size > 0.0 && theirs.dot(ours).abs() <= RATIO_TOLERANCE * size
         };
@@ -265,16 +266,16 @@ impl ContactStage {
         let wrong = match () {
             () if parts().all(|part| part <= INEXACT_ERROR) => WrongVectors::Inexact,
             () if self.vectors.iter().all(is_zero) => WrongVectors::Zero,
-            () if self.vectors.iter().all(right_angle) => WrongVectors::Perpendicular,
-            () if self.vectors.iter().any(off) => WrongVectors::Direction,
-            () if along.iter().all(|&ratio| ratio < 0.0) => WrongVectors::Reversed,
-            () if along.iter().all(|&ratio| ratio > 0.0) => WrongVectors::Length,
+            () if self.vectors.iter().all(is_perpendicular) => WrongVectors::Perpendicular,
+            () if self.vectors.iter().any(is_off_direction) => WrongVectors::Direction,
+            () if vector_ratios.iter().all(|&ratio| ratio < 0.0) => WrongVectors::Reversed,
+            () if vector_ratios.iter().all(|&ratio| ratio > 0.0) => WrongVectors::Length,
             () => WrongVectors::Direction,
         };
         let details = match wrong {
             WrongVectors::Inexact => vec![StageDetail::VectorError(parts().fold(0.0, f64::max))],
             WrongVectors::Zero => Vec::new(),
-            _ => vec![StageDetail::Vectors(ratios(&along))],
+            _ => vec![StageDetail::Vectors(ratios(&vector_ratios))],
         };
         let fault = StageFault::ContactVectors { kind: common_kind(&listed), wrong };
         Some(new_observation(fault, details, listed.len()))

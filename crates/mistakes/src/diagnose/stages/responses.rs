@@ -173,23 +173,23 @@ fn measure_change(particle: usize, quantity: Quantity, states: [&State; 3], u: V
     });
     let (ours, theirs) = (expected - before, actual - before);
     let small = ROUND_OFF_LIMIT * (1.0 + length(before) + length(expected));
-    let along = theirs.dot(&u);
+    let component = theirs.dot(&u);
     Change {
         ratio: (length(ours) > 100.0 * small).then(|| {
-            let ratio = along / ours.dot(&u);
-            if along.abs() <= small { 0.0 } else { ratio }
+            let ratio = component / ours.dot(&u);
+            if component.abs() <= small { 0.0 } else { ratio }
         }),
-        changes_across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
+        changes_across: length(theirs - component * u) > small.max(RATIO_TOLERANCE * length(ours)),
         is_right: length(theirs - ours) <= small.max(RATIO_TOLERANCE * length(ours)),
     }
 }
 
 fn describe_change(changed: ChangedQuantity, wrong: &[Change], contacts: usize) -> StageDetail {
-    let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
-    let amount = match common_value(&along) {
-        _ if along.is_empty() => Amount::Unwanted,
+    let component_ratios: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
+    let amount = match common_value(&component_ratios) {
+        _ if component_ratios.is_empty() => Amount::Unwanted,
         Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= RATIO_TOLERANCE => Amount::Right,
-        _ => Amount::Ratio(ratios(&along)),
+        _ => Amount::Ratio(ratios(&component_ratios)),
     };
     let across = wrong.iter().any(|change| change.changes_across);
     StageDetail::Change { changed, amount, across, wrong: wrong.len(), of: contacts }

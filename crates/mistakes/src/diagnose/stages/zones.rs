@@ -321,8 +321,8 @@ fn move_group(scene: &Scene, group: &ParticleGroup, stops: bool, start: &State, 
     let angle = rotation_angle(scene, group, start, state);
     for one in all() {
         let arm = vector_at(&start.positions, one) - center;
-        let across = Vec2::new(-arm.y, arm.x);
-        let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * across;
+        let turned_arm = Vec2::new(-arm.y, arm.x);
+        let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * turned_arm;
         set_vector(&mut state.positions, one, x);
         set_vector(&mut state.velocities, one, divide(x - vector_at(&start.positions, one), scene.time_step));
     }

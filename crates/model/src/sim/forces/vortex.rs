@@ -16,8 +16,8 @@ pub(super) fn add_gradient(
     let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);
     let n = divide(d, r);
-    let along = strength * n;
-    let turned = Vec2::new(-along.y, along.x);
+    let scaled_direction = strength * n;
+    let turned = Vec2::new(-scaled_direction.y, scaled_direction.x);
     let slip = turned - (vector_at(v, b) - vector_at(v, a));
     let force = coupling * divide(slip, r * r);
     add(gradient, a, force);

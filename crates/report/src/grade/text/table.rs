@@ -54,9 +54,9 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let base = || base.iter().copied();
     let full: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
     let without_time: Vec<&TextColumn> = base().chain(&groups).collect();
-    let short: Vec<&TextColumn> = base().chain([&scenes]).collect();
+    let shortest: Vec<&TextColumn> = base().chain([&scenes]).collect();
     let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total_width(columns) <= width);
-    let chosen = [full, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
+    let chosen = [full, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(shortest);
     render_rows(&chosen, grades, style)
 }
 

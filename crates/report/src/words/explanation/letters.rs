@@ -30,8 +30,9 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
         parts.push(if all(PairKind::ParticleHalfPlane) {
             "R is the particle's radius".to_owned()
         } else if kinds.len() > 1 && !is_edge {
-            let alone = if kinds.contains(&PairKind::ParticleHalfPlane) { ", with a half-plane r1 alone" } else { "" };
-            format!("R is the sum of the radii, r1 + r2{alone}")
+            let exception =
+                if kinds.contains(&PairKind::ParticleHalfPlane) { ", with a half-plane r1 alone" } else { "" };
+            format!("R is the sum of the radii, r1 + r2{exception}")
         } else {
             format!("R is r1 + {}", if is_edge { "re, the particle's and the edge's radius" } else { "r2" })
         });

@@ -222,7 +222,7 @@ fn is_about(ratio: f64, value: f64) -> bool {
 
 /// Describes ratios: as one number such as "1.5 times" if they agree, otherwise as a range.
 pub(super) fn describe_ratio(ratios: Ratios) -> String {
-    let short = |value: f64| {
+    let shorten = |value: f64| {
         if value.abs() >= 1e6 {
             return format_g(value);
         }
@@ -231,8 +231,8 @@ pub(super) fn describe_ratio(ratios: Ratios) -> String {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     };
     match ratios {
-        Ratios::All(ratio) => format!("{} times", short(ratio)),
-        Ratios::Between(low, high) => format!("{} to {} times", short(low), short(high)),
+        Ratios::All(ratio) => format!("{} times", shorten(ratio)),
+        Ratios::Between(low, high) => format!("{} to {} times", shorten(low), shorten(high)),
     }
 }
 

@@ -126,9 +126,9 @@ impl RemoteWorker {
     }
 
     async fn check_outcome(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
-        let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
+        let is_code = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
         ensure(
-            short(&outcome.code) && outcome.code != crate::task::JUDGE_ERROR,
+            is_code(&outcome.code) && outcome.code != crate::task::JUDGE_ERROR,
             Problem::invalid("the verdict's code is unknown"),
         )?;
         let seconds = Some(outcome.seconds.clone()).filter(|seconds| !seconds.is_empty());

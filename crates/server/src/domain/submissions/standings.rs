@@ -116,8 +116,8 @@ impl Staff {
     /// Fails if there is no such assignment.
     pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
         let assignment = self.assignment(assignment).await?;
-        let short = self.short_standings(&assignment).await?;
-        self.whole_standings(&short).await
+        let short_standings = self.short_standings(&assignment).await?;
+        self.whole_standings(&short_standings).await
     }
 
     /// Returns the standings of these students, with all data of the submissions that count.

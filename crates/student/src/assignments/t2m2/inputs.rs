@@ -26,15 +26,17 @@ impl Inputs {
     /// Creates the inputs of the formulas from a pair's motion.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
-        let still = |point: Vec2| BoundedPointMotion {
+        let at_rest = |point: Vec2| BoundedPointMotion {
             start: BoundedVector::from_exact(point),
             shift: BoundedVector::default(),
         };
         let (ways, radii) = match *motion {
-            PairMotion::Particles { centers: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
+            PairMotion::Particles { centers: [one, two], radii } => {
+                ([way(one), way(two), at_rest(Vec2::zeros())], radii)
+            }
             PairMotion::Edge { center, ends: [first, second], radii } => ([center, first, second].map(way), radii),
             PairMotion::HalfPlane { center, radius, point, normal } => {
-                ([way(center), still(point), still(normal)], [radius, 0.0])
+                ([way(center), at_rest(point), at_rest(normal)], [radius, 0.0])
             }
         };
         let radii = radii.map(BoundedValue::from_exact);

@@ -109,8 +109,8 @@ impl Sweep {
             return self.rows.visit_overlaps(boxes, visit_boxes);
         }
         for (index, one) in boxes.iter().enumerate() {
-            let near = boxes[index + 1..].iter().take_while(|other| !other.begins_behind(one));
-            near.filter(|other| one.overlaps(other)).for_each(|other| visit_boxes(one, other));
+            let candidates = boxes[index + 1..].iter().take_while(|other| !other.begins_behind(one));
+            candidates.filter(|other| one.overlaps(other)).for_each(|other| visit_boxes(one, other));
         }
     }
 
