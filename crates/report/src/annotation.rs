@@ -9,15 +9,11 @@ pub(crate) fn render_annotation(level: &str, title: &str, text: &str) -> String 
 /// Returns one annotation whose text has several lines.
 pub(crate) fn join_annotation<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
     let lines: Vec<String> = lines.into_iter().map(escape_data).collect();
-    format!("::{level} title={}::{}\n", escape_property(title), lines.join("%0A"))
+    let title = escape_data(title).replace(':', "%3A").replace(',', "%2C");
+    format!("::{level} title={title}::{}\n", lines.join("%0A"))
 }
 
 /// Escapes the text after `::` in a workflow command.
 fn escape_data(text: &str) -> String {
     to_one_line(text).replace('%', "%25")
-}
-
-/// Escapes the value of a property in a workflow command.
-fn escape_property(text: &str) -> String {
-    escape_data(text).replace(':', "%3A").replace(',', "%2C")
 }

@@ -16,7 +16,6 @@ use fosssim_findings::{
 };
 use fosssim_judge::{FindingKind, PairText, ReadFailure};
 use fosssim_mistakes::together::find_likely_mistakes;
-use fosssim_model::assignments::Assignment;
 
 /// The text about a trace that lacks the lists that its scene requires.
 pub const STATES_ONLY: &str =
@@ -28,7 +27,7 @@ const NOT_FOUND_CODE: i32 = 127;
 /// Describes the result of a scene in one sentence.
 pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
-        Reason::Right => step_share::describe_right_steps(result.steps, spell_number),
+        Reason::Right => step_share::describe_right_steps(result.steps, |count| count.to_string()),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         // Traces that were handed in have no program that ended.
@@ -103,15 +102,13 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.submission_fault().map(|unfit| match unfit {
         SubmissionFault::Build(end) => build(end),
-        SubmissionFault::Milestone(other) => describe_milestone(other),
+        SubmissionFault::Milestone(other) => {
+            let title = other.definition().title;
+            format!("it looks like a program of {title}, which is not the milestone of this suite")
+        }
         SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => describe_unwritten(grade),
         SubmissionFault::Scene(result) => summarize(result),
     })
-}
-
-/// Describes a program that was written for a milestone that is not the suite's.
-fn describe_milestone(milestone: Assignment) -> String {
-    format!("it looks like a program of {}, which is not the milestone of this suite", milestone.definition().title)
 }
 
 /// Describes a submission that logs nothing in any scene. If the hints allow it, the text names the parts that are not
@@ -149,17 +146,14 @@ pub fn build(end: &BuildEnd) -> String {
     }
 }
 
-fn spell_number(count: u64) -> String {
-    count.to_string()
-}
-
 fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
     match wrong {
         WrongTrace::Undisclosed => "the trace is wrong".to_owned(),
         WrongTrace::Nothing => "the trace contains no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
-            format!("{}, first step {first}: {kind}", step_share::describe_wrong(*wrong, steps, spell_number))
+            let share = step_share::describe_wrong(*wrong, steps, |count| count.to_string());
+            format!("{share}, first step {first}: {kind}")
         }
         WrongTrace::Damaged => "the trace is damaged".to_owned(),
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),

@@ -18,10 +18,16 @@ pub(super) struct FurtherCommands<'a> {
 }
 
 impl FurtherCommands<'_> {
-    /// Returns the suggested commands for a scene.
-    pub(super) fn list_commands(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
+    /// Returns the suggested commands for a wrong scene, or for a submission in which none is wrong.
+    pub(super) fn list_commands(&self, grade: &Grade, scene: Option<&SceneGrade>) -> Vec<String> {
         let Some(submission) = self.submissions.iter().find(|submission| submission.name == grade.submission) else {
             return Vec::new();
+        };
+        let is_whole = !self.arguments.failed && self.arguments.scene.is_empty();
+        let Some(scene) = scene else {
+            let submit = "The program is right on every scene of the suite: submit it.".to_owned();
+            let lines = vec![if is_whole { submit } else { format!("$ {}", self.grade_command(submission)) }];
+            return if grade.verdict.is_accepted() && self.submissions.len() == 1 { lines } else { Vec::new() };
         };
         let mut lines = Vec::new();
         let is_wrong_trace = scene.verdict.is_wrong_trace();
@@ -35,7 +41,6 @@ impl FurtherCommands<'_> {
             lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
-        let is_whole = !self.arguments.failed && self.arguments.scene.is_empty();
         let is_default = is_whole && self.arguments.suite == Assignment::DEFAULT.key();
         if wrong > 1 && wrong == grade.scenes().count() && is_default {
             let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);

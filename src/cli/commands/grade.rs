@@ -321,7 +321,7 @@ impl GradingSession<'_> {
         let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace_place(submission, scene).map(|place| place.path());
         let closer = FurtherCommands { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
-        let closer = |grade: &Grade, scene: &_| closer.list_commands(grade, scene);
+        let closer = |grade: &Grade, scene: Option<&_>| closer.list_commands(grade, scene);
         render_text(grades, self.skipped_entries(), shown, MAX_HARDEST, Some(&closer))
     }
 

@@ -15,6 +15,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let judgment = outcome.fair.as_deref()?;
     let (look, verdict) = match outcome.parity.overall {
         Overall::Passed => (TextStyle::Right, "passed"),
+        Overall::Failed if check.is_accepted() => (TextStyle::Notice, "failed"),
         Overall::Failed => (TextStyle::Wrong, "failed"),
         Overall::None => (TextStyle::Notice, "no verdict"),
     };

@@ -2,6 +2,15 @@
 use super::{Check, first_finding};
 use crate::{describe::pair_key, untrusted_text::quote};
 
+/// The advice for a trace that is right.
+const NEXT_IF_RIGHT: &str =
+    "Check a trace of another scene, or run the program on a whole suite: fosssim-oracle grade ./FOSSSim";
+
+/// Returns advice for a trace that both rule books accept; `None` for other traces.
+pub(crate) fn suggest_next(check: &Check<'_>) -> Option<&'static str> {
+    (check.is_accepted() && check.difference().is_none()).then_some(NEXT_IF_RIGHT)
+}
+
 /// Returns the commands in a form that can be typed. There are none if the trace is right, or if it came from standard
 /// input and can't be read again.
 pub(super) fn list_commands(check: &Check<'_>) -> Vec<String> {

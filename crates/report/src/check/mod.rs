@@ -12,7 +12,7 @@ mod fair;
 mod fair_view;
 mod file_signature;
 pub(crate) mod first_finding;
-mod further_commands;
+pub(crate) mod further_commands;
 mod steps;
 mod text;
 mod verdict_gaps;

@@ -52,6 +52,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.extend(books::render(check, style));
     parts.extend(render_section("Notes", "  - ", &list_notes(check), style));
     parts.extend(render_section("Next", "  $ ", &further_commands::list_commands(check), style));
+    parts.extend(render_section("Next", "  - ", further_commands::suggest_next(check).as_slice(), style));
     parts.join("\n")
 }
 

@@ -12,6 +12,7 @@ use crate::{
         consequences, describe_problem,
         divergence::{self, Row, Value},
         first_finding::{find_first, is_other_scene},
+        further_commands::suggest_next,
         list_notes, render_headline,
     },
     describe::pair_key,

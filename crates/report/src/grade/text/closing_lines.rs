@@ -59,13 +59,17 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         return text;
     }
     let causes = group_by_cause(grade);
-    if let Some(scene) = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()) {
+    let wrong = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()).copied();
+    if let Some(scene) = wrong {
         let code = style.paint(verdict_style(scene.verdict), scene.verdict.code());
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scene to look at first"));
         let _ = writeln!(text, "  {code} {}: {}", to_one_line(&scene.scene), to_one_line(&words::summarize(scene)));
-        for line in options.advice.map(|closer| closer(grade, scene)).unwrap_or_default() {
-            let _ = writeln!(text, "  {line}");
+    }
+    for (number, line) in options.advice.map(|closer| closer(grade, wrong)).unwrap_or_default().iter().enumerate() {
+        if number == 0 && wrong.is_none() {
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Next"));
         }
+        let _ = writeln!(text, "  {line}");
     }
     text
 }

@@ -31,8 +31,9 @@ pub enum TextDetail {
     All,
 }
 
-/// A function that returns lines of advice about a scene. Lines that begin with `$ ` are commands.
-pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
+/// A function that returns lines of advice about a wrong scene, or about an accepted submission. Lines that begin with
+/// `$ ` are commands.
+pub type Advice<'a> = &'a dyn Fn(&Grade, Option<&SceneGrade>) -> Vec<String>;
 
 /// Renders grades as text, with these options.
 #[derive(Clone, Copy, Default)]

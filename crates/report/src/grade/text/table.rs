@@ -31,11 +31,10 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let before = since("before", &|changes| format_optional_points(changes.earlier_points));
     let right = since("right", &|changes| format!("+{}", changes.newly_right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.newly_wrong.len()));
-    let groups = grades.first().map_or(0, |grade| grade.groups.len());
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| &grade.groups).map(|group| group.name.as_str()).collect();
     let is_tests = names.iter().all(|name| name.len() > GROUP_SUFFIX.len() && name.ends_with(GROUP_SUFFIX));
-    let groups: Vec<TextColumn> = (0..groups)
+    let groups: Vec<TextColumn> = (0..names.len())
         .map(|number| {
             let name = if is_tests { names[number].trim_end_matches(GROUP_SUFFIX) } else { names[number] };
             column(&shorten_name(&to_one_line(name)), false, &|grade| {
@@ -55,7 +54,8 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     let full: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
     let without_time: Vec<&TextColumn> = base().chain(&groups).collect();
     let shortest: Vec<&TextColumn> = base().chain([&scenes]).collect();
-    let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total_width(columns) <= width);
+    let total = |columns: &[&TextColumn]| columns.iter().map(|column| column_width(column) + 2).sum::<usize>();
+    let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total(columns) <= width + 2);
     let chosen = [full, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(shortest);
     render_rows(&chosen, grades, style)
 }
@@ -93,10 +93,6 @@ pub fn shorten_name(name: &str) -> String {
 
 fn column_width(column: &TextColumn) -> usize {
     column.cells.iter().map(|cell| count_columns(cell)).max().unwrap_or(0)
-}
-
-fn total_width(columns: &[&TextColumn]) -> usize {
-    columns.iter().map(|column| column_width(column) + 2).sum::<usize>().saturating_sub(2)
 }
 
 fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {

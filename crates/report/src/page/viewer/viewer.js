@@ -496,7 +496,7 @@ async function followFragment(articles) {
   const first =
     target ||
     articles.find((article) => article.querySelector("details.scene[open]")) ||
-    articles.find((article) => article.querySelector(".stage"));
+    articles.find((article) => article.querySelector(".stage") && !article.querySelector("details.scene"));
   const viewer = first && (await unfoldCard(first));
   if (viewer && moment) {
     if (fragment.has("step")) viewer.goToStep(Number(fragment.get("step")));

@@ -40,6 +40,9 @@ class Words extends Drawing {
         );
     }
     this.say.textContent = parts.join(" ");
+    // The start has no numbers of a step.
+    if (this.facts.parentElement) this.facts.parentElement.hidden = this.step === 0;
+    if (this.step === 0) return;
     const rows = [];
     if (close) {
       rows.push(
