@@ -1,4 +1,4 @@
-// promise: A program cannot watch or lock files of others.
+// promise: A program cannot watch or lock other users' files.
 // expect: exited 0
 #include "attack.h"
 #include <sys/inotify.h>

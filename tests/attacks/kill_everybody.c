@@ -1,4 +1,4 @@
-// promise: A program cannot signal all processes together.
+// promise: A program cannot signal all processes at the same time.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

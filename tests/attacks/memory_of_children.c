@@ -1,4 +1,4 @@
-// promise: The memory of all processes together is limited.
+// promise: The total memory of all processes is limited.
 // expect: memory
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot change the priority of others.
+// promise: A program cannot change the priority of other processes.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

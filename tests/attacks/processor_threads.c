@@ -1,4 +1,4 @@
-// promise: The processor time of all threads together is limited.
+// promise: The total processor time of all threads is limited.
 // expect: cpu
 #include "attack.h"
 static void *burn(void *nothing) {

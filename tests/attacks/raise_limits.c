@@ -1,4 +1,4 @@
-// promise: A program cannot raise its limits, or change those of others.
+// promise: A program cannot raise its limits, or change those of other processes.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -22,7 +22,7 @@ pub trait PageHost: Sync {
     /// the end of the file; `None` if the file cannot be read.
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize>;
 
-    /// Reports the progress of a request: the number of completed steps, and the number of all steps.
+    /// Reports the progress of a request: the number of completed steps, and the total number of steps.
     fn progress(&self, done: u32, all: u32);
 }
 

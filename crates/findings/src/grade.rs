@@ -90,7 +90,7 @@ pub struct Grade {
     pub warnings: Vec<String>,
     /// The layers of the sandbox that were active.
     pub layers: Vec<String>,
-    /// The wall time of all runs together. It includes the runs whose results were reused.
+    /// The total wall time of all runs. It includes the runs whose results were reused.
     pub wall: Duration,
     /// The keys of mistakes that accepted scenes refute.
     #[serde(rename = "refuted")]
@@ -309,12 +309,13 @@ pub struct SceneGrade {
     pub max_points: f64,
     /// Whether the result was reused from an earlier grading.
     pub cached: bool,
-    /// The likely mistakes in the scene that reports show, the likeliest first. If all scenes together show a common
-    /// mistake, it comes from all of them; otherwise from this scene alone ([`SceneResult::explanations`]).
+    /// The likely mistakes in the scene that reports show, the likeliest first. They come from
+    /// explaining all scenes together if one of those explanations applies to this scene, and otherwise from this scene
+    /// alone ([`SceneResult::explanations`]).
     #[serde(rename = "settled")]
     pub corrected_explanations: Vec<Explanation>,
     /// The number of explanations at the start of [`corrected_explanations`](Self::corrected_explanations) that come
-    /// from all scenes together.
+    /// from explaining all scenes together.
     #[serde(rename = "agreed")]
     pub agreed_count: usize,
 }

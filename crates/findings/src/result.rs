@@ -223,7 +223,7 @@ pub enum NotRunReason {
         /// The worst verdict of these scenes.
         verdict: Verdict,
     },
-    /// The submission has used up its time for all scenes together, which is the value.
+    /// The submission has used up its total time for all scenes, which is the value.
     Total(Duration),
     /// An earlier scene was not accepted, and the grading was to stop at the first such scene.
     FailFast,

@@ -10,7 +10,7 @@ pub struct Timing {
     pub machine: String,
     /// The timed runs, in the order in which they were made.
     pub runs: Vec<TimedRun>,
-    /// The verdict on a timed run, if it differs from that on the graded run. No further runs were timed then.
+    /// The verdict on a timed run, if it differs from that on the graded run. No further runs were timed after it.
     pub failed: Option<Verdict>,
 }
 

@@ -25,7 +25,7 @@ pub(super) const SHARED_FILE: &str =
 pub(super) const FILE_OF_ANOTHER: &str = "the program is a hard link to another submission's file";
 
 /// Returns whether an open file belongs to another submission. `known` is what was found out about the file when
-/// submissions were searched for. Fails if a file with several names is not the one that was found then.
+/// submissions were searched for. Fails if a file with several names is not the one that was found during that search.
 pub(super) fn belongs_to_another(file: &File, known: Option<&ProgramFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match known {

@@ -33,7 +33,7 @@ use thiserror::Error;
 /// The limits on what an archive may contain.
 #[derive(Debug, Clone, Copy)]
 pub struct ArchiveLimits {
-    /// The maximum number of bytes of all files together.
+    /// The maximum total number of bytes of all files.
     pub bytes: u64,
     /// The maximum number of files and folders.
     pub entries: usize,
@@ -117,7 +117,7 @@ pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec
 }
 
 /// Returns the folder of an unpacked archive that contains the submission. Many archives have a single folder at their
-/// top, which is returned then.
+/// top; if so, it is that folder.
 pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     let mut tops = files.iter().map(|file| file.components().next().filter(|_| file.components().count() > 1));
     match tops.next().flatten() {

@@ -6,7 +6,7 @@ use std::{
     rc::Rc,
 };
 
-/// The number of bytes that all readers together may still read.
+/// The total number of bytes that the readers may still read.
 #[derive(Debug, Clone)]
 pub(crate) struct Meter(Rc<Cell<u64>>);
 

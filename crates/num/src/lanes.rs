@@ -214,7 +214,7 @@ impl<S: Simd> Lanes<S> {
         Self { values: self.simd.max_f64s(self.values, other.values), ..self }
     }
 
-    /// Returns the largest number of all lanes. No number may be NaN.
+    /// Returns the largest of the lanes' numbers. No number may be NaN.
     #[inline(always)]
     pub fn largest(self) -> f64 {
         self.simd.reduce_max_f64s(self.values)

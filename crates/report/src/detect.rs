@@ -385,7 +385,7 @@ view! {
         passes: usize = place.passes,
         /// The lists that the trace logs for the detection call, in the order of `polynomials`. A missing list is empty
         /// here, and if all are missing, there are no lists. Null for the reference's own run, and if the trace logs
-        /// another number of polynomials in the pass, because its lists can't be assigned to calls then.
+        /// another number of polynomials in the pass, because then its lists can't be assigned to calls.
         logged: Option<Vec<Vec<WrittenNumber>>> = match place.logged {
             CallLog::Polynomials(logged) => Some(logged.iter().map(|list| to_written_numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),

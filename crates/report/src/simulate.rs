@@ -17,7 +17,7 @@ pub struct SimulationSummary<'a> {
     pub output: Option<&'a str>,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The number of events of each kind, in all steps together.
+    /// The total number of events of each kind, in all steps.
     pub counts: EventCounts,
     /// The size of the trace that was written.
     pub written_trace: WrittenTrace,

@@ -27,7 +27,7 @@ pub struct Limits {
     pub cpu: Duration,
     /// The limit on the wall time from the start to the end.
     pub wall: Duration,
-    /// The limit on the resident memory of all processes together, in bytes. Files of the working folder do not count
+    /// The limit on the total resident memory of all processes, in bytes. Files of the working folder do not count
     /// unless they are mapped, even if the folder is in memory. The stack of the main thread is always limited to 8
     /// MiB.
     pub memory: u64,

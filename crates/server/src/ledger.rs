@@ -14,7 +14,7 @@ use std::time::Duration;
 ///
 /// # Errors
 ///
-/// Fails if the database cannot be changed. The caller must not commit then.
+/// Fails if the database cannot be changed. In that case the caller must not commit.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {

@@ -155,7 +155,7 @@ pub(in crate::cli) const MAX_SHARDS: usize = 10_000;
 pub(in crate::cli) struct ShardArgument {
     /// The number of the part, from 1.
     pub(in crate::cli) number: usize,
-    /// The number of all parts.
+    /// The total number of parts.
     pub(in crate::cli) total: usize,
 }
 

@@ -228,7 +228,7 @@ pub(super) struct ExplainArguments {
     /// The file for the report, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// Run the program without the sandbox if layers are missing. Never do this with programs of others.
+    /// Run the program without the sandbox if layers are missing. Never do this with other people's programs.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]
@@ -268,7 +268,7 @@ pub(super) struct ShrinkArguments {
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
     pub(super) format: ExplainFormat,
-    /// Run the program without the sandbox if layers are missing. Never do this with programs of others.
+    /// Run the program without the sandbox if layers are missing. Never do this with other people's programs.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]

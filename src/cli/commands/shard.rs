@@ -33,7 +33,7 @@ pub(super) struct SharedInputs {
     version: String,
     /// The digest of the grader's program, because two builds of the same version may judge differently.
     grader: String,
-    /// The number of all shards.
+    /// The total number of shards.
     #[serde(rename = "of")]
     pub(super) total: usize,
     /// The name of the suite.

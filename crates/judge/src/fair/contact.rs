@@ -48,8 +48,8 @@ fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
 /// A function that returns a polynomial's value at a time, and the tolerance of that value.
 type EvaluateFn = fn(&[BoundedValue], f64) -> (f64, f64);
 
-/// Returns whether a pair may come into contact at time `t`. No polynomial may be negative then. Unless the step starts
-/// at `t`, one polynomial must be zero then. Both hold within the tolerances.
+/// Returns whether a pair may come into contact at time `t`. No polynomial may be negative at `t`. Unless the step
+/// starts at `t`, one polynomial must be zero there. Both conditions hold within the tolerances.
 fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;

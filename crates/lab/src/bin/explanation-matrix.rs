@@ -122,7 +122,10 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
         }
     }
     let all = wrong.len();
-    println!("\nfrom all scenes together: {} of {all} named first; the others:", all - confused.len());
+    println!(
+        "\nexplained by all scenes together: {} of {all} are named as the likeliest; the others:",
+        all - confused.len()
+    );
     confused.iter().for_each(|line| println!("{line}"));
 }
 

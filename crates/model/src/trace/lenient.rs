@@ -201,7 +201,7 @@ impl<R: Read> LenientReader<R> {
     /// Replaces `frame` by the next record, whether or not the scene has that many records.
     ///
     /// # Errors
-    /// Fails with the [`ReadStop`] after the last readable record. `frame` is unspecified then.
+    /// Fails with the [`ReadStop`] after the last readable record. In that case `frame` is unspecified.
     pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         self.record_start = self.source.offset();
         self.notes.clear();

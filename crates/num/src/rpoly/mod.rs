@@ -63,7 +63,7 @@ impl Zeros {
         &self.list[..self.length]
     }
 
-    /// Returns the number of steps of all stages together: usually a few dozen, thousands if a polynomial is mostly
+    /// Returns the total number of steps of all stages: usually a few dozen, thousands if a polynomial is mostly
     /// round-off or subnormal. Only the duration of the search depends on it.
     pub fn steps(&self) -> u32 {
         self.steps

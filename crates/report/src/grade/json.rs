@@ -76,7 +76,7 @@ view! {
         /// The maximum number of points of the suite.
         #[schemars(range(min = 0.0))]
         max_points: f64 = grade.max_points,
-        /// The wall time of all runs together, in seconds.
+        /// The total wall time of all runs, in seconds.
         #[schemars(range(min = 0.0))]
         wall_seconds: f64 = grade.wall.as_secs_f64(),
         /// The layers of the sandbox that were active.

@@ -126,7 +126,7 @@ pub(super) struct Purpose {
     /// The descriptor from which the program itself is executed, if calls are not announced. Its number is beyond the
     /// limit of descriptors, so no other file can get it.
     pub(super) entry_file: Option<u64>,
-    /// Whether the program runs as its own user, so that permissions protect the files of others.
+    /// Whether the program runs as its own user, so that permissions protect other users' files.
     pub(super) own_user: bool,
 }
 

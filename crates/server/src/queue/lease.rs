@@ -36,7 +36,7 @@ pub struct Progress {
     /// The number of scenes that have a verdict.
     #[schema(maximum = 1_000_000)]
     pub done: u32,
-    /// The number of all scenes in the grading.
+    /// The total number of scenes in the grading.
     #[schema(maximum = 1_000_000)]
     pub all: u32,
 }

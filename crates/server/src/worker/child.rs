@@ -180,7 +180,7 @@ mod tests {
         assert_eq!(end("kill -STOP $PPID; exit 4").await, End::Code(4), "a guard that was stopped goes on");
         let child = Child::start(shell("trap 'exit 7' TERM; kill -USR1 $PPID; while :; do sleep 0.01; done"));
         let child = child.expect("a child");
-        // The trap may not be set yet: the shell ends by the signal then.
+        // The trap may not be set yet; then the shell ends by the signal.
         child.interrupt();
         assert!(matches!(child.wait().await, End::Code(7) | End::Signal(libc::SIGTERM | libc::SIGUSR1)));
     }

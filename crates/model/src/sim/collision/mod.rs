@@ -73,7 +73,7 @@ impl Handler {
     ///
     /// # Errors
     /// Fails with [`StepError::RootSearch`] if a root search would never end, and with [`StepError::Work`] if the
-    /// allowed work is exceeded. The state is unspecified then.
+    /// allowed work is exceeded. In both cases the state is unspecified.
     pub fn handle<O: Observer>(
         &mut self,
         bodies: &Bodies,

@@ -79,7 +79,7 @@ impl Detector {
         self.pass_count
     }
 
-    /// Limits the work of all steps together.
+    /// Limits the total work of all steps.
     pub fn limit_work(&mut self, max_work: u64) {
         self.max_work = max_work;
     }

@@ -108,7 +108,7 @@ impl Stepper {
     ///
     /// # Errors
     /// `implicit-euler` fails with [`StepError::Newton`] if Newton's method does not converge, or with
-    /// [`StepError::Work`] if the allowed work is exceeded. The state is unchanged then.
+    /// [`StepError::Work`] if the allowed work is exceeded. In both cases the state is unchanged.
     pub fn advance<'a>(
         &mut self,
         step: u32,

@@ -45,7 +45,7 @@ pub(super) struct Strips {
     radius: f64,
     /// The maximum reach of any two particles.
     reach: f64,
-    /// The distance on x beyond which two particles are not in reach. It is not so small that its square underflows.
+    /// The distance along x beyond which two particles are not in reach. It is not so small that its square underflows.
     width: f64,
     /// The number of rows per length.
     density: f64,

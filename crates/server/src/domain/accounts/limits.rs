@@ -12,7 +12,8 @@ use std::{
 };
 use tokio::sync::{OwnedMutexGuard, OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
-/// The transfers that may run in parallel for all accounts together. Each needs a connection, a file and about 100 KiB.
+/// The number of transfers that may run in parallel, for all accounts. Each needs a connection, a file and about 100
+/// KiB.
 static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 
 /// The maximum time that an upload waits for other uploads of the same account.

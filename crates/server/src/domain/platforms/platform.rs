@@ -150,7 +150,7 @@ impl Staff {
     /// # Errors
     ///
     /// Fails if no platform offers a list, if a platform does not answer, or if more than a third of the members would
-    /// leave without confirmation. Nothing changes then.
+    /// leave without confirmation. In these cases nothing changes.
     pub async fn read_roster(&self, mode: RosterMode) -> Result<RosterRead, Problem> {
         let app = &self.app;
         let mut transaction = app.0.database.read().await?;

@@ -2,7 +2,7 @@
 use fosssim_num::vector::Vec2;
 use std::f64::consts::SQRT_2;
 
-/// A body's extent on x, y, x + y and x - y.
+/// A body's extent along x, y, x + y and x - y.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct BodyExtent {
     pub body: u32,
@@ -28,17 +28,17 @@ impl BodyExtent {
         own
     }
 
-    /// Returns the lower and the upper end on y.
-    pub fn ends_on_y(&self) -> [f64; 2] {
+    /// Returns the lower and the upper end along y.
+    pub fn ends_along_y(&self) -> [f64; 2] {
         [self.low[1], self.high[1]]
     }
 
-    /// Returns whether the ends on x and y are finite, and no upper end is below its lower end.
+    /// Returns whether the ends along x and y are finite, and no upper end is below its lower end.
     pub fn is_finite(&self) -> bool {
         [0, 1].iter().all(|&axis| self.low[axis] <= self.high[axis] && (self.high[axis] - self.low[axis]).is_finite())
     }
 
-    /// Returns whether the box begins behind the end of `other` on x.
+    /// Returns whether the box begins behind the end of `other` along x.
     pub fn begins_behind(&self, other: &Self) -> bool {
         self.low[0] > other.high[0]
     }

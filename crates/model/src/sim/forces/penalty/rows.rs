@@ -1,4 +1,4 @@
-//! Rows of equal height, each with the boxes that it touches, to find boxes that overlap on y.
+//! Rows of equal height, each with the boxes that it touches, to find boxes that overlap along y.
 use super::extent::BodyExtent;
 
 /// The boxes of each row, in the order of the boxes.
@@ -16,11 +16,11 @@ pub(super) struct Rows {
 }
 
 impl Rows {
-    /// Assigns boxes to rows. The ends of the boxes on y are finite, and no upper end is below its lower end.
+    /// Assigns boxes to rows. The ends of the boxes along y are finite, and no upper end is below its lower end.
     ///
     /// A row is at least as high as the average box, so a box is in three rows on average at most.
     pub fn assign(&mut self, boxes: &[BodyExtent]) {
-        let ends = || boxes.iter().map(BodyExtent::ends_on_y);
+        let ends = || boxes.iter().map(BodyExtent::ends_along_y);
         let (mut lowest, mut highest, mut total) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         for [low, high] in ends() {
             (lowest, highest, total) = (lowest.min(low), highest.max(high), total + (high - low));
@@ -54,7 +54,7 @@ impl Rows {
     }
 
     /// Calls `visit` for all pairs of boxes that overlap or touch, in order of the first box, then of the second. The
-    /// boxes are those of [`assign`](Self::assign), sorted by their lower ends on x.
+    /// boxes are those of [`assign`](Self::assign), sorted by their lower ends along x.
     pub fn visit_overlaps(&mut self, boxes: &[BodyExtent], mut visit: impl FnMut(&BodyExtent, &BodyExtent)) {
         let Self { spans, starts, boxes_of_rows, later, found } = self;
         later.clone_from(starts);

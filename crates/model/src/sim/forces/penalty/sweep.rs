@@ -1,9 +1,9 @@
 //! The contest's search for nearby pairs, and the order in which it finds them (simulation.md 3.1).
 //!
-//! Each body has a box of its radius without the layer; boxes that overlap on x and on y are near. If the scene has at
-//! least one edge per hundred particles, boxes must overlap on x + y and x - y as well. The search visits bodies in the
-//! order of their lower ends on x. It continues from the order of the previous search, so bodies with equal lower ends
-//! keep their order; the first order is that of the C++ library's sort.
+//! Each body has a box of its radius without the layer; boxes that overlap along x and along y are near. If the scene
+//! has at least one edge per hundred particles, boxes must overlap along x + y and x - y as well. The search visits
+//! bodies in the order of their lower ends along x. It continues from the order of the previous search, so bodies with
+//! equal lower ends keep their order; the first order is that of the C++ library's sort.
 use super::{extent::BodyExtent, introsort, rows::Rows};
 use crate::{scene::Scene, sim::nearby::sort_nearly_sorted};
 use fosssim_num::vector::vector_at;
@@ -33,11 +33,11 @@ pub(super) struct Sweep {
     edge_boxes: Vec<BodyExtent>,
     /// The rows of the particles' boxes.
     rows: Rows,
-    /// Whether rows are used. They need many boxes, whose ends on x and y are finite and in order.
+    /// Whether rows are used. They need many boxes, whose ends along x and y are finite and in order.
     has_rows: bool,
     /// The memory for sorting boxes.
     sort_buffers: (Vec<u128>, Vec<BodyExtent>),
-    /// For each edge, the largest upper end on x of this edge and the edges before it.
+    /// For each edge, the largest upper end along x of this edge and the edges before it.
     max_upper_ends: Vec<f64>,
 }
 
@@ -128,8 +128,8 @@ impl Sweep {
     }
 }
 
-/// Creates the boxes of `count` bodies, and sorts them by lower ends on x, from the previous order if there is one. In
-/// that case the original sorts by insertion, so no body passes a body whose lower end is NaN.
+/// Creates the boxes of `count` bodies, and sorts them by lower ends along x, from the previous order if there is one.
+/// In that case the original sorts by insertion, so no body passes a body whose lower end is NaN.
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 fn sort(
     boxes: &mut Vec<BodyExtent>,
@@ -142,8 +142,8 @@ fn sort(
         return introsort::sort(boxes, |bounds| bounds.low[0]);
     }
     boxes.iter_mut().for_each(|bounds| *bounds = make(bounds.body));
-    // Keys are integers in the order of the position on x, then of the previous search, so that each body is moved only
-    // once.
+    // Keys are integers in the order of the position along x, then of the previous search, so that each body is moved
+    // only once.
     keys.clear();
     keys.extend(
         boxes.iter().zip(0_u32..).map(|(extent, rank)| u128::from(sort_key(extent.low[0])) << 32 | u128::from(rank)),

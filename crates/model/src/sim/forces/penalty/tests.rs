@@ -111,7 +111,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     assert_eq!(found, searched(&scene, &[&first, &then]));
 }
 
-/// Two boxes overlap on x and y, but not on the diagonals, which count only in scenes with edges.
+/// Two boxes overlap along x and y, but not on the diagonals, which count only in scenes with edges.
 #[test]
 fn with_edges_boxes_have_four_axes() {
     let x = [0.0, 0.0, 0.18, 0.18, 5.0, 0.0, 6.0, 0.0];
