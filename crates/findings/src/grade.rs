@@ -42,20 +42,13 @@ pub struct CourseNote {
     pub points: Option<f64>,
 }
 
-impl CourseNote {
-    /// Returns the note as one line. `text` and `link` format its text and its URL.
-    pub fn format_line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
-        let note = self.text.as_deref().map(|note| text(note.trim_end_matches('.')));
-        let points = self.points.map(|points| format!("rubric points: {points}"));
-        let parts: Vec<String> = [note, self.link.as_deref().map(link), points].into_iter().flatten().collect();
-        parts.join("; ")
-    }
-}
-
-/// Formats the note as one line, with an unchanged URL.
+/// Formats the note as one line.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.write_str(&self.format_line(str::to_owned, str::to_owned))
+        let words = self.text.as_deref().map(|words| words.trim_end_matches('.').to_owned());
+        let points = self.points.map(|points| format!("rubric points: {points}"));
+        let parts: Vec<String> = [words, self.link.clone(), points].into_iter().flatten().collect();
+        formatter.write_str(&parts.join("; "))
     }
 }
 

@@ -48,11 +48,15 @@ pub(super) fn count_scenes(count: usize) -> String {
     format_count(count as u64, "scene")
 }
 
-/// Renders a course's note and its link.
+/// Renders a course's note. Its text is the link, if there are both.
 pub(super) fn render_note(note: Option<&CourseNote>) -> String {
-    let Some(note) = note else { return String::new() };
-    let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", escape(address));
-    format!(" <span class=\"hint\">The course: {}.</span> ", note.format_line(escape, link))
+    let Some(CourseNote { text, link, points }) = note else { return String::new() };
+    let label = text.as_ref().or(link.as_ref()).map(|words| escape(words.trim_end_matches('.')));
+    let link = link.as_ref().map(|address| format!("<a href=\"{}\" rel=\"noopener\">", escape(address)));
+    let label = label.map(|label| link.map_or_else(|| label.clone(), |link| format!("{link}{label}</a>")));
+    let points = points.map(|points| format!("rubric points: {points}"));
+    let parts: Vec<String> = label.into_iter().chain(points).collect();
+    format!(" <span class=\"hint\">The course: {}.</span> ", parts.join("; "))
 }
 
 /// Escapes a line for HTML, and writes the indices of letters in its formulas as subscripts.
