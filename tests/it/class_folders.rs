@@ -334,6 +334,9 @@ fn a_class_is_compared_with_its_earlier_grading() {
     assert_eq!(rows[0], ["submission", "points", "verdict", "before", "right", "broke", "own", "seconds"]);
     assert_eq!((&rows[1][..2], &rows[1][3..6]), (&["alice", "10"][..], &["0", "+1", "-0"][..]), "{}", run.shown());
     assert_eq!(rows[2][rows[2].len() - 6..][..3], ["10", "+0", "-1"], "{}", run.shown());
+    assert!(text.contains("Since the earlier grading\n  more points: alice\n  fewer points: bob\n"), "{}", run.shown());
+    let page = String::from_utf8(workspace.read("grades/index.html")).expect("text");
+    assert!(page.contains(">0 <b>+10</b></td>") && page.contains(">10 <b>-10</b></td>"), "{page}");
     let page = String::from_utf8(workspace.read("grades/reports/bob.html")).expect("text");
     assert!(
         page.contains("<li>10 points before, 0 now</li><li>1 scene broke: scenes/bounce (BT)</li>"),
@@ -344,6 +347,15 @@ fn a_class_is_compared_with_its_earlier_grading() {
     let json: serde_json::Value = serde_json::from_str(&run.out()).expect("JSON");
     let expected = serde_json::json!({ "points": 10.0, "max_points": 10.0, "right": [], "broke": [], "others": [] });
     assert_eq!(json["grades"][0]["changes"], expected, "{}", run.shown());
+    // Submissions that are new or missing are named.
+    workspace.write("cleo/bounce.bin", &bytes);
+    let run = grade(&workspace, &["--traces", "alice", "cleo", "--output", "next", "--compare", "grades"]);
+    let text = run.out();
+    assert!(text.contains("\nSince the earlier grading\n  new: cleo\n"), "{}", run.shown());
+    assert!(text.contains("Not graded\n  bob   only the earlier grading contains it\n"), "{}", run.shown());
+    let page = String::from_utf8(workspace.read("next/index.html")).expect("text");
+    let change = page.split("Since the earlier grading").nth(1).expect("a section");
+    assert!(change.contains("<b>1</b> new") && page.contains("<bdi>bob</bdi>"), "{page}");
     let refused = compared(&["--compare", "suite.toml"]);
     assert!(refused.code == Some(2) && refused.err().contains("suite.toml contains no grades"), "{}", refused.shown());
 }

@@ -77,6 +77,7 @@ impl Diagnosis {
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
         }
+        let common: Vec<&Explanation> = self.common.iter().filter(|common| !common.is_unexplained()).collect();
         for (index, case) in self.cases.iter().enumerate() {
             // A note that many traces have, such as a crash, is written once.
             let is_alike = |other: &&Case| {
@@ -90,16 +91,13 @@ impl Diagnosis {
             }
             let more = self.cases[index + 1..].iter().filter(is_alike).count();
             let _ = writeln!(text, "{}", render_head(case, more, style));
-            for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
-                text += &render_mistakes(std::slice::from_ref(other), style);
+            for other in case.explanations.iter().map(std::slice::from_ref) {
+                if !common.iter().any(|common| is_named_in(common, other)) {
+                    text += &render_mistakes(other, style);
+                }
             }
         }
         text + &smallest
-    }
-
-    fn is_common(&self, explanation: &Explanation) -> bool {
-        let is_said = |common: &&Explanation| !common.is_unexplained();
-        self.common.iter().filter(is_said).any(|common| is_named_in(common, std::slice::from_ref(explanation)))
     }
 
     /// Renders the report as JSON.

@@ -2,12 +2,12 @@
 use crate::{
     cli::{console, input},
     files::FilePlace,
-    report::{number::format_count, untrusted_text::strip_control_characters},
-    suite::{EarlierGrade, Grade},
+    report::untrusted_text::strip_control_characters,
+    suite::{EarlierGrade, Grade, SkippedEntry},
 };
 use anyhow::{Context, Result, bail};
 use serde::Deserialize;
-use std::path::Path;
+use std::{collections::BTreeSet, path::Path};
 
 /// The name of the file of grades in a folder for results.
 const FILE_NAME: &str = "grades.jsonl";
@@ -55,13 +55,25 @@ pub(super) fn add_earlier_grades(earlier: &[EarlierGrade], grades: &mut [Grade])
         let name = strip_control_characters(&grade.submission);
         grade.earlier_grade = earlier.iter().find(|before| before.submission == name).cloned();
     }
-    let new: Vec<&str> =
-        grades.iter().filter(|grade| grade.earlier_grade.is_none()).map(|grade| grade.submission.as_str()).collect();
-    if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
-        let new = format_count(new.len() as u64, "submission");
-        console::print_remark(format!(
-            "{new} have no earlier grade, for example {}\n",
-            strip_control_characters(first)
-        ));
+    if let ([Grade { submission, earlier_grade: None, .. }], [_, ..]) = (&*grades, earlier) {
+        let name = strip_control_characters(submission);
+        console::print_remark(format!("the earlier grading does not contain {name}\n"));
     }
+}
+
+/// Returns an entry for each submission that only the earlier grading contains; none if a single submission is graded.
+pub(super) fn list_missing<'n>(
+    earlier: &[EarlierGrade],
+    names: impl ExactSizeIterator<Item = &'n str>,
+) -> Vec<SkippedEntry> {
+    if names.len() < 2 {
+        return Vec::new();
+    }
+    let names: BTreeSet<String> = names.map(strip_control_characters).collect();
+    let missing = earlier.iter().filter(|before| !names.contains(&before.submission));
+    let entry = |before: &EarlierGrade| SkippedEntry {
+        name: before.submission.clone(),
+        reason: "only the earlier grading contains it".to_owned(),
+    };
+    missing.map(entry).collect()
 }

@@ -95,7 +95,10 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     if arguments.output.is_none() && output.is_symlink() {
         bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
     }
-    let FoundSubmissions { mut submissions, skipped } = Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let search = Search::new(arguments, plan.build.as_ref(), &output);
+    let FoundSubmissions { mut submissions, mut skipped } = search.run()?;
+    let names = submissions.iter().map(|submission| submission.name.as_str());
+    skipped.extend(earlier_grades::list_missing(&earlier, names));
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
     if let Some(sharding) = &sharding {

@@ -48,6 +48,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     let named = paths.iter().zip(distinct_names(&paths));
     let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     earlier_grades::add_earlier_grades(earlier, &mut grades);
+    let skipped = earlier_grades::list_missing(earlier, grades.iter().map(|grade| grade.submission.as_str()));
     for folder in &paths {
         if let Some(strays) = Folder::open(folder).ok().and_then(|folder| describe_other_traces(&folder, &names)) {
             console::print_remark(format!("warning: {}\n", to_one_line(&format!("{}: {strays}", folder.display()))));
@@ -65,10 +66,10 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
         published_page,
         is_part,
         grades: &grades,
-        skipped: &[],
+        skipped: &skipped,
     };
     results.write(reports, |grades| {
-        render_text(grades, &[], text_detail(arguments, grades.len() > 1), MAX_HARDEST, None)
+        render_text(grades, &skipped, text_detail(arguments, grades.len() > 1), MAX_HARDEST, None)
     })?;
     Ok(exit_code(&grades))
 }

@@ -1,7 +1,7 @@
 //! The verdicts of both rule books, one line for each.
 use super::{Check, consequences, fair};
 use crate::{
-    number::format_count,
+    number::{format_count, group_digits},
     style::{Style, TextStyle},
 };
 use fosssim_judge::{Overall, fair::find_cause};
@@ -23,7 +23,9 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookVerdict; 2]> {
     let total = outcome.parity.findings.counts.total();
     found.extend((total > 0).then(|| format_count(total, "finding")));
     let follow = consequences::count_consequences(outcome);
-    found.extend((follow > 0).then(|| format!("among them {}", consequences::describe_consequences(follow))));
+    let describe =
+        || format!("among them polynomials that are wrong only because of wrong positions: {}", group_digits(follow));
+    found.extend((follow > 0).then(describe));
     let parity = ("the original's rules", look, verdict, found.join(", "));
     let (look, verdict) = fair::verdict(judgment);
     Some([parity, ("the fair rules", look, verdict, fair::summarize(judgment, outcome))])

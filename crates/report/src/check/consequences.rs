@@ -1,5 +1,4 @@
 //! Counts the polynomials that differ only because their input positions are wrong.
-use crate::number::group_digits as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
 /// The kinds of findings that are faults of a formula, and not of its input positions.
@@ -37,9 +36,4 @@ pub(crate) fn count_consequences(outcome: &Outcome) -> u64 {
         return 0;
     }
     FORMULA_KINDS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
-}
-
-/// Describes how many polynomials are wrong only because positions are wrong.
-pub(super) fn describe_consequences(follow: u64) -> String {
-    format!("polynomials that are wrong only because of wrong positions: {}", number(follow))
 }

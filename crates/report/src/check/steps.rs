@@ -46,7 +46,7 @@ struct Steps {
 /// Collects the wrong steps while a trace is judged.
 #[derive(Debug, Clone, Default)]
 pub struct WrongSteps {
-    shown_steps: StepChoice,
+    pub(super) shown_steps: StepChoice,
     parity: Steps,
     fair: Steps,
 }
@@ -134,16 +134,6 @@ fn official_steps(check: &Check<'_>) -> (Book, Steps) {
 /// Returns the numbers of the wrong steps by the official rule book, up to [`MAX_LISTED`].
 pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.steps_of_book(check.book(), check.outcome.findings_by(check.book())).numbers
-}
-
-/// Returns whether the report shows only particular steps that the user requested.
-pub(super) fn shows_only_selected(check: &Check<'_>) -> bool {
-    matches!(check.steps.shown_steps, StepChoice::Selected(_))
-}
-
-/// Returns whether the user requested all wrong steps.
-pub(super) fn are_all_requested(check: &Check<'_>) -> bool {
-    check.steps.shown_steps == StepChoice::All
 }
 
 /// Returns the requested steps and the findings in each; `None` if no step was requested.

@@ -7,7 +7,7 @@ use super::{
         style::{Style, TextStyle},
         words,
     },
-    Check, advice, books, divergence, fair,
+    Check, StepChoice, advice, books, divergence, fair,
     first_finding::{find_first, is_other_scene},
     further_commands, steps,
 };
@@ -37,7 +37,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
         format!("{} {place}\n{lines}", style.paint(TextStyle::Strong, "Stopped at"))
     }));
-    if steps::shows_only_selected(check) {
+    if matches!(check.steps.shown_steps, StepChoice::Selected(_)) {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
@@ -45,7 +45,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let shows_mistakes = !is_other_scene(check);
     parts.extend(render_mistakes(check, style).filter(|_| shows_mistakes));
     // If all steps are shown, the first finding is one of them.
-    let first = find_first(check).filter(|_| !steps::are_all_requested(check));
+    let first = find_first(check).filter(|_| check.steps.shown_steps != StepChoice::All);
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::advice_lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| shows_mistakes));

@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
-use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
+use std::{collections::BTreeMap, fmt::Write};
 
 /// The number of submissions that were run on a scene, and the number of those that were accepted there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -52,15 +52,43 @@ pub fn render_class(grades: &[Grade], max_rows: usize, style: Style) -> String {
         }
         text += &table.render(style);
     }
+    for (number, (change, members)) in group_by_change(grades).iter().enumerate() {
+        if number == 0 {
+            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Since the earlier grading"));
+        }
+        let _ = writeln!(text, "  {change}: {}", list_names(grades, members, max_rows));
+    }
     let same = group_same_programs(grades);
     if !same.is_empty() {
         let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Identical programs"));
         for members in &same {
-            let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
-            let _ = writeln!(text, "  {}", list_first(&names, max_rows));
+            let _ = writeln!(text, "  {}", list_names(grades, members, max_rows));
         }
     }
     text
+}
+
+fn list_names(grades: &[Grade], members: &[usize], max_names: usize) -> String {
+    let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
+    list_first(&names, max_names)
+}
+
+/// Returns the kinds of changes since the earlier grading, each with its submissions as indices into `grades`. Kinds
+/// without submissions are left out.
+pub(crate) fn group_by_change(grades: &[Grade]) -> Vec<(&'static str, Vec<usize>)> {
+    if grades.iter().all(|grade| grade.earlier_grade.is_none()) {
+        return Vec::new();
+    }
+    let kind = |grade: &Grade| match (grade.points, grade.changes().map(|changes| changes.earlier_points)) {
+        (_, None) => Some("new"),
+        (Some(now), Some(Some(then))) if now > then => Some("more points"),
+        (Some(now), Some(Some(then))) if now < then => Some("fewer points"),
+        _ => None,
+    };
+    let kinds: Vec<_> = grades.iter().map(kind).collect();
+    let members = |wanted| (0..grades.len()).filter(|&number| kinds[number] == Some(wanted)).collect();
+    let all = ["more points", "fewer points", "new"].map(|change| (change, members(change)));
+    all.into_iter().filter(|(_, members): &(_, Vec<usize>)| !members.is_empty()).collect()
 }
 
 /// Returns groups of submissions with the same program. The numbers are indices into `grades`.
@@ -87,9 +115,6 @@ pub(crate) struct ClassFigures {
     pub(crate) points: Option<[f64; 4]>,
     /// The maximum number of points of the suite.
     pub(crate) max_points: f64,
-    /// The number of submissions with more points than in the earlier grading, and the number with fewer; `None` if
-    /// there is no earlier grading.
-    pub(crate) submissions_since: Option<(usize, usize)>,
 }
 
 impl ClassFigures {
@@ -105,9 +130,6 @@ impl ClassFigures {
             [lowest, .., highest] => Some([mean, middle(), *lowest, *highest]),
             [one] => Some([*one; 4]),
         };
-        let change = |grade: &Grade| Some(grade.points?.total_cmp(&grade.changes()?.earlier_points?));
-        let changed = |wanted: Ordering| grades.iter().filter(|grade| change(grade) == Some(wanted)).count();
-        let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
         Self {
             submissions: grades.len(),
             run_submissions: judged().count(),
@@ -115,7 +137,6 @@ impl ClassFigures {
             without_points: judged().count() - reached.len(),
             points,
             max_points: grades.first().map_or(0.0, |grade| grade.max_points),
-            submissions_since: is_compared.then(|| (changed(Ordering::Greater), changed(Ordering::Less))),
         }
     }
 }
@@ -136,9 +157,6 @@ fn render_head(grades: &[Grade]) -> String {
     }
     if figures.without_points > 0 {
         let _ = write!(text, "; {} without points", figures.without_points);
-    }
-    if let Some((more, fewer)) = figures.submissions_since {
-        let _ = write!(text, "; {more} with more points than before, {fewer} with fewer");
     }
     text
 }

@@ -29,7 +29,9 @@ pub use causes::{AlikeScenes, group_by_cause};
 pub(crate) use causes::{clearest_scene, is_listed, rank};
 pub(crate) use changes::change_lines;
 pub use class::render_class;
-pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, group_same_programs, has_never_run};
+pub(crate) use class::{
+    ClassFigures, SharedMistake, find_frequent, find_hardest, group_by_change, group_same_programs, has_never_run,
+};
 pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::render_lines as json_lines;

@@ -5,7 +5,7 @@ use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
 /// The placeholder for a card's key, until the card's page is known. It is a control character, which no text contains.
-const KEY_PLACEHOLDER: &str = "\u{1}";
+pub(super) const KEY_PLACEHOLDER: &str = "\u{1}";
 
 /// The placeholder for the mistakes that all scenes have in common, which are known later.
 const CAUSE_MARK: &str = "\u{2}";
@@ -19,7 +19,7 @@ pub struct Card {
     data: String,
     /// The data with rounded motions, for pages without space for exact ones; empty if rounding saves nothing.
     #[serde(default)]
-    rounded: String,
+    pub(super) rounded: String,
 }
 
 /// The size in bytes from which motions are rounded.
@@ -87,10 +87,5 @@ impl Card {
     /// Returns the size of the rounded motions in bytes; `None` if rounding saves nothing.
     pub(super) fn rounded_size(&self) -> Option<usize> {
         (!self.rounded.is_empty()).then_some(self.rounded.len())
-    }
-
-    /// Returns the rounded motions as script text, in which `key` replaces the placeholder.
-    pub(super) fn round_motions(&self, key: &str) -> String {
-        self.rounded.replace(KEY_PLACEHOLDER, key)
     }
 }

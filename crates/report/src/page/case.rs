@@ -264,11 +264,6 @@ fn split_lead(what: &str) -> (String, Option<&str>) {
     }
 }
 
-/// Returns the pair of a finding in the notation of the viewer.
-fn pair_key_of_finding(finding: &Finding) -> String {
-    Focus::from(finding).pair.map(pair_key).unwrap_or_default()
-}
-
 /// Returns the bound beyond which a rule book rejects a state. For the fair rules, the bound grows with the numbers, so
 /// this is the bound for the largest numbers.
 fn state_bound(evidence: &Evidence, book: Book) -> f64 {

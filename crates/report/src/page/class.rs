@@ -10,7 +10,8 @@ use crate::untrusted_text::to_one_line;
 use crate::{
     grade::{
         ClassFigures, SharedMistake, clearest_scene, describe_likely, find_frequent, find_hardest,
-        find_likely_mistakes, format_optional_points, format_points, group_same_programs, has_never_run,
+        find_likely_mistakes, format_optional_points, format_points, group_by_change, group_same_programs,
+        has_never_run,
     },
     smallest::title,
     words,
@@ -146,6 +147,13 @@ impl ClassContent<'_> {
         named.chain(same).collect()
     }
 
+    /// Returns the changes since the earlier grading, with the submissions concerned.
+    fn changes(&self) -> Vec<Cluster<'_>> {
+        let cluster =
+            |(change, members): (&str, _)| Cluster { heading: change.to_owned(), members, ..Cluster::default() };
+        group_by_change(self.class.grades).into_iter().map(cluster).collect()
+    }
+
     /// Returns groups of submissions with the same program.
     fn same_programs(&self) -> Vec<Cluster<'_>> {
         let cluster = |members: Vec<usize>| {
@@ -183,11 +191,6 @@ fn sort_key(points: Option<f64>) -> String {
 /// Returns the points of the earlier grading, if there is one.
 fn earlier_points(grade: &Grade) -> Option<f64> {
     grade.changes()?.earlier_points
-}
-
-/// Returns the number of scenes that are accepted.
-fn count_accepted(grade: &Grade) -> usize {
-    grade.count_verdict(Verdict::Accepted)
 }
 
 /// Returns the first likely mistake of a submission, or the reason why it is not accepted.
@@ -259,17 +262,13 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_optional_points);
     let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
-    let rows = [
+    vec![
         (format!("{} of {}", figures.run_submissions, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", format_points(figures.max_points))),
         (median, "median, of submissions that were run".to_owned()),
         (unsolved.to_string(), "scenes without a correct answer".to_owned()),
-    ];
-    let since = figures
-        .submissions_since
-        .map(|(more, fewer)| (format!("{more} / {fewer}"), "more / fewer points than before".to_owned()));
-    rows.into_iter().chain(since).collect()
+    ]
 }
 
 /// Returns groups of submissions that fail the same scenes for the same reasons, the largest first. Submissions with a

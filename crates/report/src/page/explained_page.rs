@@ -101,11 +101,6 @@ impl ExplainedContent<'_> {
     }
 }
 
-/// Renders a mistake that explains several traces.
-fn render_mistake(one: &Explanation) -> String {
-    mistakes(std::slice::from_ref(one), false, None)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

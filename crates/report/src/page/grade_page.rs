@@ -1,6 +1,6 @@
 //! The page of one submission, with its points, its likely mistakes, and a card for each scene.
 use super::{
-    Card,
+    Card, card,
     card_details::{self, CardDetail, OUTPUT_BUDGET},
     case::mistakes,
     markup::{count_scenes, escape, render_note},
@@ -160,11 +160,6 @@ impl GradeContent<'_> {
     }
 }
 
-/// Renders a scene's name, which may be broken after a slash.
-fn break_at_slashes(name: &str) -> String {
-    escape(&to_one_line(name)).replace('/', "/<wbr>")
-}
-
 /// Describes as HTML what the scenes in which a program fails have in common.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
     let description = escape(&to_one_line(&words::describe_located(found)));
@@ -231,7 +226,7 @@ impl<'a> Article<'a> {
         };
         let motion = match (card, room) {
             (Some(card), CardDetail::Exact) => card.data(&key),
-            (Some(card), CardDetail::Rounded) => card.round_motions(&key),
+            (Some(card), CardDetail::Rounded) => card.rounded.replace(card::KEY_PLACEHOLDER, &key),
             _ => String::new(),
         };
         // Without a card, the output is all that there is to see.
