@@ -278,6 +278,11 @@ fn a_program_at_hand_is_asked_on_probe_scenes() {
     assert!(run.code == Some(2) && run.err().contains("the last step of small.xml is 1"), "{}", run.shown());
     let run = workspace.run(["shrink", "./fosssim-sample", "small.xml"]);
     assert!(run.code == Some(0) && run.out().contains("Nothing is wrong"), "{}", run.shown());
+    // The example of the cause shows the only wrong polynomial, which is not shown again after scaling.
+    let reversed = workspace.path("fosssim-sample.pp-reversed");
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_fosssim-sample"), reversed).expect("a link");
+    let out = workspace.run(["shrink", "./fosssim-sample.pp-reversed"]).out();
+    assert!(out.contains("      actual    -3 t^2\n") && !out.contains("Step 1 of 1"), "{out}");
 }
 
 #[test]
