@@ -66,16 +66,15 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<ProgramFacts, Star
     if is_one_of(path, own) {
         return Err(StartProblem::GradersOwn);
     }
-    if metadata.permissions().mode() & 0o111 == 0 {
-        return Err(StartProblem::NotExecutable);
-    }
     // A program that may be executed but not read would also prevent the checks of the supervisor.
     let start = read_header(path).ok_or(StartProblem::NotPermitted)?;
-    match (start.strip_prefix(b"#!"), identify_other_system(&start)) {
-        (Some(line), _) => find_interpreter(line, own, 0),
-        (None, Some(system)) => Err(StartProblem::WrongSystem { system: system.into() }),
-        (None, None) => require_elf(&start).map(|()| ProgramFacts::default()),
-    }
+    let facts = match (start.strip_prefix(b"#!"), identify_other_system(&start)) {
+        (Some(line), _) => find_interpreter(line, own, 0)?,
+        (None, Some(system)) => return Err(StartProblem::WrongSystem { system: system.into() }),
+        (None, None) => require_elf(&start).map(|()| ProgramFacts::default())?,
+    };
+    // Only a program is helped by permission to execute it.
+    if metadata.permissions().mode() & 0o111 == 0 { Err(StartProblem::NotExecutable) } else { Ok(facts) }
 }
 
 /// Returns the other operating system whose programs begin with these bytes; `None` if it is unknown.
@@ -292,8 +291,10 @@ mod tests {
         assert_eq!(examine(Path::new("/dev/null"), &[]), Err(StartProblem::NotAFile));
         let (_kept, path) = written("a", b"#!/bin/sh\n", 0o644);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotExecutable));
-        let (_kept, path) = written("a", b"hello", 0o755);
-        assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
+        for mode in [0o644, 0o755] {
+            let (_kept, path) = written("a", b"hello", mode);
+            assert_eq!(examine(&path, &[]), Err(StartProblem::NotAProgram));
+        }
         for (start, system) in [
             (b"MZ\x90\x00\x03\x00\x00\x00", Some("Windows")),
             (b"\xcf\xfa\xed\xfe\x0c\x00\x00\x01", Some("macOS")),
