@@ -34,6 +34,7 @@ impl Finding {
 /// The text about a decision that differs because coefficients are missing. The trace's other polynomials show whether
 /// a factor explains why they are missing.
 const LOSS_TEXT: &str = "the trace's polynomials lack the coefficients for it";
+const MOVED_TEXT: &str = "matches neither the motion before the pair's response or failsafe nor the one after";
 const OTHER_FORM_TEXT: &str = "the other of the two accepted forms; a program must use one of them throughout";
 const OMITTED_PAIR_TEXT: &str = "are close enough for the penalty force, but no force was applied between them";
 const DOUBLED_PAIR_TEXT: &str = "are close enough for the penalty force, but the force between them was applied twice";
@@ -92,10 +93,7 @@ impl Display for SteplessFinding<'_> {
             FindingDetail::RepeatedCollision { actual } => {
                 write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
             }
-            FindingDetail::PassPositions { place } => write!(
-                f,
-                "{place}: follows from wrong positions, not from those after the preceding response or failsafe"
-            ),
+            FindingDetail::PassPositions { place } => write!(f, "{place}: {MOVED_TEXT}"),
             FindingDetail::RecordsDiffer { part } => f.write_str(describe_record_difference(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             FindingDetail::TrimmedDecision { place, collides } => {

@@ -177,10 +177,10 @@ impl ProgramUnderTest {
         let left_out = tasks.len() - cases.len();
         tasks.truncate(cases.len());
         if left_out > 0 {
-            let scenes = format_count(left_out as u64, "scene");
+            let others = format_count(left_out as u64, "other scene");
             console::print_remark(format!(
-                "the program exceeded its limits on {stopped} scenes, so it was not run on {scenes} others; look for a \
-                 loop that does not end\n"
+                "the program exceeded its limits on {stopped} scenes, so it was not run on {others}; look for a loop \
+                 that does not end\n"
             ));
         }
         let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
