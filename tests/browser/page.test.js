@@ -370,7 +370,11 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   for (const group of ["GeometricTests", "ImpulsesTests"]) {
     mkdirSync(join(traces, group), { recursive: true });
     for (const file of readdirSync(join(root, "assets/t2m2", group)))
-      trace(`${group}/${file.replace(".xml", "")}`, WRONG[1], `traces/${group}/${file.replace(".xml", ".bin")}`);
+      trace(
+        `${group}/${file.replace(".xml", "")}`,
+        `pp-radius-not-squared,${WRONG[1]}`,
+        `traces/${group}/${file.replace(".xml", ".bin")}`,
+      );
   }
   await page.locator("#tab-submission").click();
   const marked = async (times) => {
@@ -383,7 +387,14 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   };
   await marked(1);
   t.diagnostic(await page.locator("#marks-said").innerText());
-  assert.match(await page.locator("#marks-list").innerText(), /angular momentum is overwritten.*\(\d+ scenes\)/s);
+  // Each likely mistake has one card, with the numbers that the program gives.
+  const { stdout } = runOracle("grade", "--traces", "traces");
+  const likely = [...stdout.matchAll(/^ {2}- (.*) \(explains (\d+) of \d+ wrong scenes; (f.*)\)$/gm)];
+  assert.deepEqual(
+    await page.locator("details.mistake > summary").allInnerTexts(),
+    likely.map(([, what, count, worth]) => `${what} (${count} scenes) F${worth.slice(1)}.`),
+  );
+  assert.equal(likely.length, 2);
   trace(WRONG[0], null, `traces/${WRONG[0]}.bin`);
   await marked(2);
   assert.match(

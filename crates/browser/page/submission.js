@@ -164,13 +164,22 @@ function showGrade(suite, grade, rows, unusedTraces) {
     file ? el("button", { type: "button", class: "plain", onclick: () => openReport(scene, file) }, words) : words;
   // The scene that shows a cause best is the first.
   const causes = grade.causes
-    .map(({ words, scenes }) => [words, scenes.map((scene) => rows.find((row) => row.scene === scene))])
+    .map(({ words, worth, scenes }) => [words, scenes.map((scene) => rows.find((row) => row.scene === scene)), worth])
     .filter(([, own]) => !own[0].isMissing);
-  const causeCards = causes.map(([words, own]) =>
+  const causeCards = causes.map(([words, own, worth]) =>
     el(
       "details",
       { class: "card mistake", open: causes.length === 1 },
-      el("summary", {}, el("b", {}, words), el("span", { class: "hint" }, ` (${formatCount(own.length, "scene")})`)),
+      el(
+        "summary",
+        {},
+        el("b", {}, words),
+        el(
+          "span",
+          { class: "hint" },
+          ` (${formatCount(own.length, "scene")})${worth ? ` Fixing it is ${worth}.` : ""}`,
+        ),
+      ),
       el("ul", {}, ...own.map((row) => el("li", {}, sceneLink(row, row.scene)))),
     ),
   );

@@ -9,7 +9,10 @@ use fosssim_grading::{
     result::Reason,
     traces,
 };
-use fosssim_mistakes::together::disclosure::limit_result;
+use fosssim_mistakes::{
+    diagnose::{Explanation, is_named_in},
+    together::disclosure::limit_result,
+};
 use fosssim_report::{grade, words};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -113,13 +116,7 @@ impl UploadedSubmission {
             let (points, max_points) = (grade::format_optional_points(points), grade::format_points(max_points));
             json!({ "points": points, "of": max_points })
         };
-        let scene_view = |scene: &SceneGrade| -> Value {
-            let (points, max_points) =
-                (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
-            let likely = scene.corrected_explanations.first().map(|mistake| grade::describe_in_scene(scene, mistake));
-            json!({ "points": points, "of": max_points, "likely": likely })
-        };
-        let scenes: Vec<Value> = graded.scenes().map(scene_view).collect();
+        let scenes: Vec<Value> = graded.scenes().map(|scene| points(scene.points, scene.max_points)).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause_view = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
@@ -128,17 +125,30 @@ impl UploadedSubmission {
             let summary = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
             json!({ "words": summary, "scenes": names })
         };
-        let causes: Vec<Value> = grade::group_by_cause(&graded)
-            .iter()
-            .filter(|scenes| !scenes[0].corrected_explanations.is_empty() || scenes.len() > 1)
-            .map(cause_view)
-            .collect();
+        let unfit = words::describe_unfit(&graded);
+        let likely = if unfit.is_some() { Vec::new() } else { grade::find_likely_mistakes(&graded) };
+        // A scene with two mistakes is listed with both.
+        let mistake_view = |(mistake, _): &(Explanation, usize)| -> Value {
+            let clearest = grade::clearest_scene(&graded, mistake).map(|scene| &scene.scene);
+            let named = graded.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
+            let others = named.map(|scene| &scene.scene).filter(|name| Some(*name) != clearest);
+            let (what, worth) = (grade::describe_likely(&graded, mistake), grade::describe_worth(&graded, mistake));
+            json!({ "words": what, "worth": worth, "scenes": clearest.into_iter().chain(others).collect::<Vec<_>>() })
+        };
+        let is_likely =
+            |scene: &&SceneGrade| likely.iter().any(|(mistake, _)| is_named_in(mistake, &scene.explanations));
+        let is_cause = |scenes: &&grade::AlikeScenes<'_>| {
+            !scenes.iter().all(is_likely) && (!scenes[0].corrected_explanations.is_empty() || scenes.len() > 1)
+        };
+        let others = grade::group_by_cause(&graded);
+        let others = others.iter().filter(is_cause).map(cause_view);
+        let causes: Vec<Value> = likely.iter().map(mistake_view).chain(others).collect();
         let value = json!({
             "causes": causes,
             "points": grade::format_optional_points(graded.points),
             "of": grade::format_points(graded.max_points),
             "verdict": graded.verdict.name(),
-            "unfit": words::describe_unfit(&graded),
+            "unfit": unfit,
             "scenes": scenes,
             "groups": groups,
         });

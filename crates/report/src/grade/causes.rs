@@ -33,7 +33,7 @@ pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
 }
 
 /// Returns the scene that shows a mistake most clearly; `None` if no scene shows it.
-pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
+pub fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
     named.min_by_key(|scene| clarity_rank(scene))
 }

@@ -25,8 +25,8 @@ pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
-pub use causes::{AlikeScenes, group_by_cause};
-pub(crate) use causes::{clearest_scene, is_listed, rank};
+pub use causes::{AlikeScenes, clearest_scene, group_by_cause};
+pub(crate) use causes::{is_listed, rank};
 pub(crate) use changes::change_lines;
 pub use class::render_class;
 pub(crate) use class::{
@@ -36,12 +36,10 @@ pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::render_lines as json_lines;
 use phrases::describe_repeated_reason;
-pub(crate) use phrases::{
-    count_wrong, describe_likely, describe_worth, describe_wrong_state, detail_likely, likely_heading,
-};
+pub(crate) use phrases::{count_wrong, describe_wrong_state, detail_likely, likely_heading};
 pub use phrases::{
-    describe_difference, describe_in_scene, describe_missing_points, find_likely_mistakes, format_optional_points,
-    format_points, format_score, head_lines, scene_lines, scene_sentence,
+    describe_difference, describe_in_scene, describe_likely, describe_missing_points, describe_worth,
+    find_likely_mistakes, format_optional_points, format_points, format_score, head_lines, scene_lines, scene_sentence,
 };
 pub use skipped_entries::{add_warnings, list_not_graded};
 pub(crate) use speed::describe_speed;

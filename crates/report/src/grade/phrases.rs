@@ -39,7 +39,7 @@ pub(crate) fn likely_heading(likely: &[(Explanation, usize)]) -> &'static str {
 
 /// Describes a likely mistake of a submission. Polynomials that no known mistake explains may follow from a state that
 /// was wrong before them; the text then names the state, and where to look.
-pub(crate) fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
+pub fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
     let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake)).flatten();
     let state = scene.and_then(describe_wrong_state);
     state.unwrap_or_else(|| words::explanation::describe_with_alternatives(mistake))
@@ -107,7 +107,7 @@ fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
 
 /// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is
 /// wrong only because of this mistake, or the grade has no points.
-pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
+pub fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     grade.points?;
     let lost = together::mistake_points(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
