@@ -125,13 +125,13 @@ struct StepRules<'a> {
     fair: Option<Context<'a>>,
 }
 
-/// The state of a replay that its steps change one after another: the reader, the end state of the last step, and the
-/// outcome so far.
+/// The state of a replay that its steps change one after another: the reader, the end state of the step that was read
+/// last, and the outcome so far.
 struct Replay<'a, R> {
     scene: &'a Scene,
     reader: LenientReader<R>,
     step_rules: StepRules<'a>,
-    /// The end state of the last step that was read.
+    /// The end state of the step that was read last.
     state: State,
     steps_read: u32,
     /// The check for states that have no meaningful continuation, if the fair rules judge.
@@ -140,7 +140,7 @@ struct Replay<'a, R> {
     /// subtracted from the other's.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
-    /// The damage of the last record, if the record could not be read.
+    /// The damage of the step that could not be read, if there is such a step.
     damage: Option<Damage>,
     /// Whether the first record, or a record of the delivered steps, is damaged.
     has_damage: bool,

@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     pub(crate) movie: Option<OsString>,
 }
 
-/// The result of a command line that ends the program without a run.
+/// The output and the exit code of a command line that ends the program without a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct EarlyExit {
     pub(crate) stdout: Vec<u8>,

@@ -3,7 +3,7 @@ use crate::{
     db::{Database, DbError, Transaction, read_row},
     health,
     lti::score,
-    queue::{self, Completion, Failure, GivenUpJob, Lease, QueuePolicy},
+    queue::{self, CompletionEffect, FailureEffect, GivenUpJob, Lease, QueuePolicy},
     task::{JUDGE_ERROR, Outcome, format_points},
     values,
 };
@@ -15,15 +15,19 @@ use std::time::Duration;
 /// # Errors
 ///
 /// Fails if the database cannot be changed. In that case the caller must not commit.
-pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
+pub async fn finish(
+    transaction: &mut Transaction,
+    lease: &Lease,
+    outcome: &Outcome,
+) -> Result<CompletionEffect, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
-        Completion::Done => {
+        CompletionEffect::Done => {
             let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
             health::record_result(transaction, &about.worker).await?;
         }
-        Completion::Late => log_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
-        Completion::Repeated => {}
+        CompletionEffect::Late => log_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
+        CompletionEffect::Repeated => {}
     }
     Ok(completion)
 }
@@ -38,15 +42,15 @@ pub async fn fail(
     policy: &QueuePolicy,
     lease: &Lease,
     fault: &str,
-) -> Result<Failure, DbError> {
+) -> Result<FailureEffect, DbError> {
     let fault = &health::strip_paths(fault);
     let failure = queue::fail(transaction, policy, lease, fault, Duration::ZERO).await?;
-    if failure == Failure::Late {
+    if failure == FailureEffect::Late {
         log_late(transaction, lease, "a failure").await?;
         return Ok(failure);
     }
     let row = find_job(transaction, lease.job).await?;
-    if failure == Failure::GivenUp {
+    if failure == FailureEffect::GivenUp {
         fail_job(transaction, lease.job, lease.attempt, fault).await?;
     } else {
         log_event(transaction, &row, "failed try", fault).await?;

@@ -226,8 +226,8 @@ impl<R: Read> LenientReader<R> {
         self.record
     }
 
-    /// Returns the byte offset of the last record (of the next record before the first call of
-    /// [`LenientReader::next`]).
+    /// Returns the byte offset of the record that was read last. Before the first call of [`LenientReader::next`],
+    /// returns the offset of the first record.
     pub fn record_offset(&self) -> u64 {
         self.record_start
     }
@@ -260,7 +260,7 @@ impl<R: Read> LenientReader<R> {
         decode::memory_bytes(&frame.polynomials) > self.limit
     }
 
-    /// Returns the notes about the last record.
+    /// Returns the notes about the record that was read last.
     pub(super) fn notes(&self) -> &[TraceError] {
         &self.notes
     }

@@ -94,8 +94,8 @@ impl<R: Read> Reader<R> {
         Ok(true)
     }
 
-    /// Returns oddities of the last record that do not stop the reading: impulses of unknown type or with missing
-    /// objects, sizes below 0 (read as 0) or above 6. At most 16 are kept.
+    /// Returns oddities of the record that was read last that do not stop the reading: impulses of unknown type or with
+    /// missing objects, sizes below 0 (read as 0) or above 6. At most 16 are kept.
     pub fn notes(&self) -> &[TraceError] {
         &self.notes
     }
@@ -105,12 +105,13 @@ impl<R: Read> Reader<R> {
         self.records.record_count()
     }
 
-    /// Returns the byte offset of the last record (of the next record before the first call of [`Reader::next`]).
+    /// Returns the byte offset of the record that was read last. Before the first call of [`Reader::next`], returns the
+    /// offset of the first record.
     pub fn record_offset(&self) -> u64 {
         self.records.record_offset()
     }
 
-    /// Returns the byte offset after the last record.
+    /// Returns the byte offset after the record that was read last.
     pub fn offset(&self) -> u64 {
         self.records.offset()
     }
@@ -120,7 +121,7 @@ impl<R: Read> Reader<R> {
         self.layout
     }
 
-    /// Records the odd impulses of the last record.
+    /// Records the odd impulses of the record that was read last.
     fn record_odd_impulses(&mut self, impulses: &[LoggedImpulse]) {
         let (record, list) = (self.record_count() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {

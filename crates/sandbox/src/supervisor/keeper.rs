@@ -96,11 +96,11 @@ enum ForkSide {
     Keeper(Keeper),
 }
 
-/// Takes the exclusive resources of the runs, and prepares their namespaces in a child process.
+/// Claims the exclusive resources of the runs, and prepares their namespaces in a child process.
 fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
     let single_thread = sys::single_thread().map_err(failure_at("fork"))?;
-    let held = ExclusiveResources::take(order)?;
+    let held = ExclusiveResources::claim(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
         return Ok(ForkSide::Guardian { keeper, held });
     }

@@ -13,7 +13,7 @@ use super::{
 pub(crate) fn kill_orphans(session: Option<i32>, user: Option<u32>) {
     const MAX_ATTEMPTS: u32 = 1000;
     // The lock on the user ended with the supervisor, so another run may already have this user.
-    let slot = user.and_then(user_slot::retake_slot);
+    let slot = user.and_then(user_slot::reclaim_slot);
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..MAX_ATTEMPTS {
         let victims = stop_then_kill(|| {

@@ -1,4 +1,4 @@
-//! Takes the exclusive resources of a run, and makes the preparations before it begins.
+//! Claims the exclusive resources of a run, and makes the preparations before it begins.
 
 use std::{io, os::fd::BorrowedFd, rc::Rc};
 
@@ -20,10 +20,10 @@ pub(super) struct ExclusiveResources {
 }
 
 impl ExclusiveResources {
-    /// Takes the exclusive resources that the order requires.
-    pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
-        let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
-        let slot = order.layers.own_user.then(user_slot::take_slot).transpose().map_err(taken)?;
+    /// Claims the exclusive resources that the order requires.
+    pub(super) fn claim(order: &RunOrder) -> Result<Self, Failure> {
+        let failed = |error: io::Error| Failure::new(format!("claim a separate user ({error})"), &error);
+        let slot = order.layers.own_user.then(user_slot::claim_slot).transpose().map_err(failed)?;
         let group = order.layers.group.then(|| Group::create(order)).transpose();
         Ok(Self { slot, group: group.map_err(failure_at("make a control group"))? })
     }

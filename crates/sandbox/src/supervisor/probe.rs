@@ -52,7 +52,7 @@ fn probe() -> io::Result<Probe> {
         }
         Err(error) => probe.group = Some(error.to_string()),
     }
-    let slot = if root { user_slot::take_slot().map(Some) } else { Ok(None) };
+    let slot = if root { user_slot::claim_slot().map(Some) } else { Ok(None) };
     let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
     if let Err(error) = &slot {
         probe.own_user = Some(error.to_string());

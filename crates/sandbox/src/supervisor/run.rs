@@ -75,11 +75,12 @@ enum StartedRun {
     Elsewhere(u8),
 }
 
-/// Takes a user and sets up the namespaces for a run, and starts the run there.
+/// Claims the user and the control group that a run needs, enters its namespaces, and starts it. If another process
+/// supervised the run inside the namespaces, returns that process's exit code.
 fn prepare_run(order: RunOrder, control: File) -> Result<StartedRun, Failure> {
     // In a session of its own, the supervisor does not receive Ctrl-C from the terminal. The grader tells it to stop.
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
-    let held = ExclusiveResources::take(&order)?;
+    let held = ExclusiveResources::claim(&order)?;
     if order.layers.namespaces
         && let NamespaceSide::Outside(code) = namespaces::enter(&order)?
     {

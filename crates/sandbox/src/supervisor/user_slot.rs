@@ -27,28 +27,28 @@ pub(super) struct UserSlot {
 /// The maximum time to wait for an id. No run within its limits takes this long.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// Takes the first id that no run holds and that has no processes. If there is none, waits for one.
+/// Claims the first id that no run holds and that has no processes. If there is none, waits for one.
 ///
 /// # Errors
 ///
 /// Fails if no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
-pub(super) fn take_slot() -> io::Result<UserSlot> {
-    take_from_range(&lock_folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
+pub(super) fn claim_slot() -> io::Result<UserSlot> {
+    claim_from_range(&lock_folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
 }
 
-/// Returns the id of a run whose supervisor was lost; `None` if another run has taken it. In that case, it had no
+/// Returns the id of a run whose supervisor was lost; `None` if another run has claimed it. In that case, it had no
 /// processes any more.
-pub(super) fn retake_slot(user: u32) -> Option<UserSlot> {
-    retake_in(&lock_folder().ok()?, user)
+pub(super) fn reclaim_slot(user: u32) -> Option<UserSlot> {
+    reclaim_in(&lock_folder().ok()?, user)
 }
 
-fn retake_in(folder: &Path, user: u32) -> Option<UserSlot> {
+fn reclaim_in(folder: &Path, user: u32) -> Option<UserSlot> {
     let lock = OpenOptions::new().write(true).open(folder.join(user.to_string())).ok()?;
     lock.try_lock().is_ok().then_some(UserSlot { user, _lock: lock })
 }
 
-/// Takes an id in the range `users`. The locks are in `folder`.
-fn take_from_range(folder: &Path, users: Range<u32>, max_wait: Duration) -> io::Result<UserSlot> {
+/// Claims an id in the range `users`. The locks are in `folder`.
+fn claim_from_range(folder: &Path, users: Range<u32>, max_wait: Duration) -> io::Result<UserSlot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
     loop {
@@ -102,18 +102,18 @@ mod tests {
     fn the_id_of_a_lost_run_is_not_taken_from_whoever_has_it_by_now() {
         let folder = tempfile::tempdir().unwrap();
         const NOBODY: u32 = 4_000_000_000;
-        assert!(retake_in(folder.path(), NOBODY).is_none());
-        let next = take_from_range(folder.path(), NOBODY..NOBODY + 1, Duration::ZERO).unwrap();
-        assert!(retake_in(folder.path(), NOBODY).is_none());
+        assert!(reclaim_in(folder.path(), NOBODY).is_none());
+        let next = claim_from_range(folder.path(), NOBODY..NOBODY + 1, Duration::ZERO).unwrap();
+        assert!(reclaim_in(folder.path(), NOBODY).is_none());
         drop(next);
-        assert_eq!(retake_in(folder.path(), NOBODY).unwrap().user, NOBODY);
+        assert_eq!(reclaim_in(folder.path(), NOBODY).unwrap().user, NOBODY);
     }
 
     #[test]
     fn with_every_id_taken_a_run_waits_for_one() {
         let folder = tempfile::tempdir().unwrap();
         // No user has this id.
-        let take = |max_wait| take_from_range(folder.path(), 4_000_000_000..4_000_000_001, max_wait);
+        let take = |max_wait| claim_from_range(folder.path(), 4_000_000_000..4_000_000_001, max_wait);
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");
         std::thread::scope(|scope| {

@@ -7,7 +7,7 @@ use super::{
 use crate::{
     calendar,
     db::{Database, DbError},
-    queue::{self, Claim, Claimant, Completion, Failure, JobKind, Notifier, QueuePolicy},
+    queue::{self, Claim, Claimant, CompletionEffect, FailureEffect, JobKind, Notifier, QueuePolicy},
 };
 use serde::Deserialize;
 use serde_json::json;
@@ -118,7 +118,7 @@ async fn send_claimed(database: &Database, policy: &QueuePolicy, lti: &Lti, clai
     match result {
         Ok(parcel) => {
             // If the lease was lost, the next sender sends the same score with the same time, which changes nothing.
-            if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
+            if queue::complete(&mut transaction, &claim.lease).await? == CompletionEffect::Done
                 && let Some(parcel) = parcel
             {
                 score::record_sent(&mut transaction, &parcel).await?;
@@ -134,10 +134,10 @@ async fn send_claimed(database: &Database, policy: &QueuePolicy, lti: &Lti, clai
             let patient_policy = QueuePolicy { max_failures: max_tries, longest_wait: MAX_WAIT, ..*policy };
             let failure = queue::fail(&mut transaction, &patient_policy, &claim.lease, &text, min_wait).await?;
             match (failure, serde_json::from_str::<ScoreOrder>(&claim.payload)) {
-                (Failure::GivenUp, _) => {
+                (FailureEffect::GivenUp, _) => {
                     score::record_failure(&mut transaction, &claim.payload, &text).await?;
                 }
-                (Failure::Retried, Ok(order)) => score::store_fault(&mut transaction, order, &text).await?,
+                (FailureEffect::Retried, Ok(order)) => score::store_fault(&mut transaction, order, &text).await?,
                 _ => {}
             }
         }

@@ -10,7 +10,7 @@ use utoipa::ToSchema;
 
 /// The effect of reporting that a job is finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Completion {
+pub enum CompletionEffect {
     /// The job is finished, and the caller must write its result in the same transaction.
     Done,
     /// The worker had already finished the job under the same lease, but did not receive the answer.
@@ -21,7 +21,7 @@ pub enum Completion {
 
 /// The effect of reporting that a try failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Failure {
+pub enum FailureEffect {
     /// The job waits for another try.
     Retried,
     /// The job has no tries left. The caller must write the failure in the same transaction.
@@ -79,17 +79,17 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
 /// # Errors
 ///
 /// Fails if the database cannot be changed.
-pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
+pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<CompletionEffect, DbError> {
     // The lease's key stays in the row, so that a repeated report is recognized.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     if changed > 0 {
-        return Ok(Completion::Done);
+        return Ok(CompletionEffect::Done);
     }
     let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'done'";
     let same = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
-    Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
+    Ok(if same.is_some() { CompletionEffect::Repeated } else { CompletionEffect::Late })
 }
 
 /// Gives a job back to the queue because its worker must stop. This does not count as a failure. Returns `false` if the
@@ -117,11 +117,11 @@ pub async fn fail(
     lease: &Lease,
     fault: &str,
     min_wait: Duration,
-) -> Result<Failure, DbError> {
+) -> Result<FailureEffect, DbError> {
     let statement = "SELECT failures, deaths FROM job
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' {for update}";
     let leased = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
-    let Some(row) = leased else { return Ok(Failure::Late) };
+    let Some(row) = leased else { return Ok(FailureEffect::Late) };
     let failures = row.int("failures")? + 1;
     let (deaths, wait) = (row.int("deaths")?, policy.retry_delay(failures).max(min_wait).min(MAX_PLATFORM_WAIT));
     let failed_try = FailedTry { job: lease.job, failures, deaths, wait, fault };
@@ -144,25 +144,25 @@ pub(super) async fn give_up_worker(
     policy: &QueuePolicy,
     row: &Row,
     fault: &str,
-) -> Result<Failure, DbError> {
+) -> Result<FailureEffect, DbError> {
     let (failures, deaths) = (row.int("failures")?, row.int("deaths")? + 1);
     let failed_try = FailedTry { job: row.int("id")?, failures, deaths, wait: policy.wait_after_death(deaths), fault };
     end_try(transaction, failed_try, deaths >= policy.max_deaths()).await
 }
 
 /// Gives a job up if this was its last try, or lets it wait for another.
-async fn end_try(transaction: &mut Transaction, loss: FailedTry<'_>, is_last: bool) -> Result<Failure, DbError> {
+async fn end_try(transaction: &mut Transaction, loss: FailedTry<'_>, is_last: bool) -> Result<FailureEffect, DbError> {
     let FailedTry { job, failures, deaths, wait, fault } = loss;
     if is_last {
         let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, finished_at = {now},
                lease_key = NULL, lease_until = NULL, last_fault = ?
             WHERE id = ?";
         transaction.execute(statement, values![failures, deaths, fault, job]).await?;
-        return Ok(Failure::GivenUp);
+        return Ok(FailureEffect::GivenUp);
     }
     let statement = "UPDATE job SET state = 'waiting', failures = ?, deaths = ?, run_after = {now} + ?,
            failed_by = worker, worker = NULL, lease_key = NULL, lease_until = NULL, last_fault = ?
         WHERE id = ?";
     transaction.execute(statement, values![failures, deaths, millis(wait), fault, job]).await?;
-    Ok(Failure::Retried)
+    Ok(FailureEffect::Retried)
 }

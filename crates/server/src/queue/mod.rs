@@ -18,7 +18,7 @@ mod tick;
 
 pub use claim::{Claimant, claim, is_due};
 pub use enqueue::{JobOwner, NewJob, enqueue, is_waiting};
-pub use lease::{Completion, Failure, Progress, complete, fail, payload, release, renew};
+pub use lease::{CompletionEffect, FailureEffect, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use queue_position::{QueuePosition, find_queue_position, find_time_left};
 pub use tick::{GivenUpJob, Tick, tick};

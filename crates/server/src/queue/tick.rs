@@ -3,14 +3,14 @@
 //! Every live process ticks, and leases expire only while a process ticks. A gap between ticks means that the database
 //! was unavailable, so that no worker could renew its lease. All leases then start again. Therefore a restart of
 //! PostgreSQL does not count as a failure of any job.
-use super::{Failure, QueuePolicy, lease::give_up_worker, millis};
+use super::{FailureEffect, QueuePolicy, lease::give_up_worker, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
 
 /// The fault that is recorded for a job whose lease expired.
-const SILENT_WORKER: &str = "the worker stopped responding";
+const NO_ANSWER: &str = "the worker stopped responding";
 
 /// The changes that a tick made.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -72,9 +72,9 @@ async fn give_up_workers(transaction: &mut Transaction, policy: &QueuePolicy, lo
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match give_up_worker(transaction, policy, &row, SILENT_WORKER).await? {
-            Failure::GivenUp => tick.given_up.push(GivenUpJob { job, attempt, worker, fault: SILENT_WORKER.into() }),
-            Failure::Retried | Failure::Late => tick.retried += 1,
+        match give_up_worker(transaction, policy, &row, NO_ANSWER).await? {
+            FailureEffect::GivenUp => tick.given_up.push(GivenUpJob { job, attempt, worker, fault: NO_ANSWER.into() }),
+            FailureEffect::Retried | FailureEffect::Late => tick.retried += 1,
         }
     }
     Ok(tick)

@@ -3,7 +3,7 @@ use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
-    queue::{self, Claimant, Completion, Failure, JobKind, Lease, Notifier, Progress, QueuePolicy, Subscription},
+    queue::{self, Claimant, JobKind, Lease, Notifier, Progress, QueuePolicy, Subscription},
     store::{Artifact, Digest, Store, StoreError},
     task::{Outcome, Task},
     visible_grade::{self, StoredTexts},
@@ -147,7 +147,7 @@ impl JobSource for LocalSource {
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
         self.notifier.commit(transaction).await?;
-        Ok((completion != Completion::Late).into())
+        Ok((completion != queue::CompletionEffect::Late).into())
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
@@ -161,10 +161,10 @@ impl JobSource for LocalSource {
         let mut transaction = self.database.begin().await?;
         let failure = ledger::fail(&mut transaction, &self.policy, lease, fault).await?;
         self.notifier.commit(transaction).await?;
-        if failure == Failure::GivenUp {
+        if failure == queue::FailureEffect::GivenUp {
             tracing::error!(job = lease.job, fault, "a job was tried too often");
         }
-        Ok((failure != Failure::Late).into())
+        Ok((failure != queue::FailureEffect::Late).into())
     }
 
     async fn fetch(&self, _: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {

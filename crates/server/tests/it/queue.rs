@@ -2,7 +2,7 @@
 use crate::support::engines::{Fresh, on_all_engines};
 use fosssim_server::{
     db::Database,
-    queue::{self, Claim, Claimant, Completion, Failure, JobKind, JobOwner, Lease, NewJob, QueuePolicy},
+    queue::{self, Claim, Claimant, CompletionEffect, FailureEffect, JobKind, JobOwner, Lease, NewJob, QueuePolicy},
     values,
 };
 use std::{collections::BTreeSet, time::Duration};
@@ -53,14 +53,14 @@ async fn claim_by(database: &Database, claimant: Claimant<'_>) -> Option<Claim> 
     claim
 }
 
-async fn complete(database: &Database, lease: &Lease) -> Completion {
+async fn complete(database: &Database, lease: &Lease) -> CompletionEffect {
     let mut transaction = database.begin().await.expect("a transaction");
     let completion = queue::complete(&mut transaction, lease).await.expect("an answer");
     transaction.commit().await.expect("commit");
     completion
 }
 
-async fn fail(database: &Database, lease: &Lease) -> Failure {
+async fn fail(database: &Database, lease: &Lease) -> FailureEffect {
     let mut transaction = database.begin().await.expect("a transaction");
     let failure = queue::fail(&mut transaction, &POLICY, lease, "it broke", Duration::ZERO).await.expect("an answer");
     transaction.commit().await.expect("commit");
@@ -118,7 +118,7 @@ async fn a_job_comes_and_goes_with_its_upload(fresh: Fresh) {
     let claimed = claim(database, "w").await.expect("a job");
     assert_eq!((claimed.lease.job, claimed.lease.attempt, claimed.failures), (number, 1, 0));
     assert_eq!(claimed.payload, "work");
-    assert_eq!(complete(database, &claimed.lease).await, Completion::Done);
+    assert_eq!(complete(database, &claimed.lease).await, CompletionEffect::Done);
     assert_eq!(claim(database, "w").await, None);
 }
 
@@ -154,7 +154,7 @@ async fn a_late_worker_changes_nothing(fresh: Fresh) {
     let frozen = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
     assert_eq!(tick(database).await.retried, 1);
-    assert_eq!(complete(database, &frozen.lease).await, Completion::Late, "it waits for another worker");
+    assert_eq!(complete(database, &frozen.lease).await, CompletionEffect::Late, "it waits for another worker");
     let_pass(database, POLICY.longest_wait).await;
     let second = claim(database, "w").await.expect("the job again");
     assert_eq!((second.lease.job, second.lease.attempt), (job, 2));
@@ -163,24 +163,24 @@ async fn a_late_worker_changes_nothing(fresh: Fresh) {
     assert!(!queue::renew(&mut transaction, &POLICY, &frozen.lease, None, MOST).await.expect("an answer"));
     assert!(!queue::release(&mut transaction, &frozen.lease).await.expect("an answer"));
     transaction.commit().await.expect("commit");
-    assert_eq!(fail(database, &frozen.lease).await, Failure::Late);
-    assert_eq!(complete(database, &frozen.lease).await, Completion::Late);
+    assert_eq!(fail(database, &frozen.lease).await, FailureEffect::Late);
+    assert_eq!(complete(database, &frozen.lease).await, CompletionEffect::Late);
     assert_eq!(state(database, job).await, "running");
-    assert_eq!(complete(database, &second.lease).await, Completion::Done);
-    assert_eq!(complete(database, &frozen.lease).await, Completion::Late);
+    assert_eq!(complete(database, &second.lease).await, CompletionEffect::Done);
+    assert_eq!(complete(database, &frozen.lease).await, CompletionEffect::Late);
 }
 
 async fn an_answer_that_got_lost_may_be_repeated(fresh: Fresh) {
     let database = &fresh.database;
     enqueue(database, JobOwner::Student(1)).await;
     let claimed = claim(database, "w").await.expect("a job");
-    assert_eq!(complete(database, &claimed.lease).await, Completion::Done);
-    assert_eq!(complete(database, &claimed.lease).await, Completion::Repeated);
+    assert_eq!(complete(database, &claimed.lease).await, CompletionEffect::Done);
+    assert_eq!(complete(database, &claimed.lease).await, CompletionEffect::Repeated);
     // A finished result is accepted even if its lease has expired in the meantime.
     enqueue(database, JobOwner::Student(1)).await;
     let slow = claim(database, "w").await.expect("a job");
     let_pass(database, POLICY.lease * 2).await;
-    assert_eq!(complete(database, &slow.lease).await, Completion::Done);
+    assert_eq!(complete(database, &slow.lease).await, CompletionEffect::Done);
     assert_eq!(tick(database).await, queue::Tick::default());
 }
 
@@ -195,11 +195,11 @@ async fn a_foreign_key_or_number_changes_nothing(fresh: Fresh) {
         Lease { attempt: held.attempt + 1, ..held.clone() },
         Lease { job: held.job + 1, ..held.clone() },
     ] {
-        assert_eq!(complete(database, &forged).await, Completion::Late, "{forged:?}");
-        assert_eq!(fail(database, &forged).await, Failure::Late, "{forged:?}");
+        assert_eq!(complete(database, &forged).await, CompletionEffect::Late, "{forged:?}");
+        assert_eq!(fail(database, &forged).await, FailureEffect::Late, "{forged:?}");
     }
     assert_eq!(state(database, job).await, "running");
-    assert_eq!(complete(database, &held).await, Completion::Done);
+    assert_eq!(complete(database, &held).await, CompletionEffect::Done);
 }
 
 async fn giving_back_costs_nothing(fresh: Fresh) {
@@ -211,7 +211,7 @@ async fn giving_back_costs_nothing(fresh: Fresh) {
         let mut transaction = database.begin().await.expect("a transaction");
         assert!(queue::release(&mut transaction, &claimed.lease).await.expect("an answer"));
         transaction.commit().await.expect("commit");
-        assert_eq!(complete(database, &claimed.lease).await, Completion::Late);
+        assert_eq!(complete(database, &claimed.lease).await, CompletionEffect::Late);
     }
 }
 
@@ -228,7 +228,7 @@ async fn a_poison_job_is_buried_when_it_has_killed_for_long(fresh: Fresh) {
         let_pass(database, POLICY.longest_wait).await;
         assert_eq!(tick.retried + tick.given_up.len(), 1);
         if let [buried] = tick.given_up.as_slice() {
-            assert_eq!(complete(database, &last.lease).await, Completion::Late);
+            assert_eq!(complete(database, &last.lease).await, CompletionEffect::Late);
             break buried.clone();
         }
     };
@@ -242,25 +242,25 @@ async fn a_failed_job_waits_longer_each_time(fresh: Fresh) {
     let database = &fresh.database;
     enqueue(database, JobOwner::Student(1)).await;
     let first = claim(database, "w").await.expect("a job");
-    assert_eq!(fail(database, &first.lease).await, Failure::Retried);
+    assert_eq!(fail(database, &first.lease).await, FailureEffect::Retried);
     assert_eq!(claim(database, "w").await, None, "it waits a second");
     let_pass(database, Duration::from_secs(1)).await;
     assert_eq!(claim(database, "w").await, None, "others get it first");
     let second = claim(database, "v").await.expect("a job");
-    assert_eq!(fail(database, &second.lease).await, Failure::Retried);
+    assert_eq!(fail(database, &second.lease).await, FailureEffect::Retried);
     let_pass(database, Duration::from_secs(1)).await;
     assert_eq!(claim(database, "w").await, None, "it waits four seconds");
     let_pass(database, Duration::from_secs(3)).await;
     let third = claim(database, "w").await.expect("a job");
-    assert_eq!(fail(database, &third.lease).await, Failure::GivenUp);
-    assert_eq!(fail(database, &third.lease).await, Failure::Late);
+    assert_eq!(fail(database, &third.lease).await, FailureEffect::GivenUp);
+    assert_eq!(fail(database, &third.lease).await, FailureEffect::Late);
 }
 
 async fn claim_all(database: &Database) -> Vec<i64> {
     let mut order = Vec::new();
     while let Some(claimed) = claim(database, "w").await {
         order.push(claimed.lease.job);
-        assert_eq!(complete(database, &claimed.lease).await, Completion::Done);
+        assert_eq!(complete(database, &claimed.lease).await, CompletionEffect::Done);
     }
     order
 }
@@ -353,7 +353,7 @@ async fn an_outage_of_the_database_costs_no_try(fresh: Fresh) {
     assert_eq!(tick(database).await, queue::Tick::default());
     let_pass(database, POLICY.lease).await;
     assert_eq!(tick(database).await.retried, 1);
-    assert_eq!(complete(database, &held.lease).await, Completion::Late);
+    assert_eq!(complete(database, &held.lease).await, CompletionEffect::Late);
 }
 
 async fn a_lease_is_not_renewed_for_ever(fresh: Fresh) {
@@ -392,6 +392,6 @@ async fn a_cancelled_job_is_gone_for_its_worker_too(fresh: Fresh) {
     assert_eq!(held.lease.job, running);
     assert!(cancel(running).await);
     assert!(!cancel(running).await);
-    assert_eq!(complete(database, &held.lease).await, Completion::Late);
+    assert_eq!(complete(database, &held.lease).await, CompletionEffect::Late);
     assert_eq!(claim(database, "w").await, None);
 }

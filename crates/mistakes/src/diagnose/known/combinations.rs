@@ -78,8 +78,9 @@ impl<'a> Search<'a> {
         self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
-    /// Returns the empty stages `set` together with further rows with which they reproduce everything. Returns `None`
-    /// if no such rows are found, if a row can be omitted, or if one of the rows is a correct variant.
+    /// Adds rows to the empty stages in `set` until all probes are reproduced. Returns `None` if `MAX_MISTAKES` more
+    /// rows do not suffice, if the complete set has fewer than two rows, if one of its rows can be omitted, if the
+    /// other wrong steps do not confirm it, or if one of its rows is a correct variant.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that explained as much when it was added.
         let mut equivalent_rows: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();

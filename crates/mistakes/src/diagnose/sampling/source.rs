@@ -104,7 +104,7 @@ pub struct StepReader<'a> {
     is_whole: bool,
     /// The number of the next step, or `None` after the end.
     next_step: Option<u32>,
-    /// The records of the last step that was read. Before the first step, it holds the first record of the trace, if
+    /// The records of the step that was read last. Before the first step, it holds the first record of the trace, if
     /// there is one.
     pub frames: StepFrames,
     /// Facts about the trace in addition to its steps.

@@ -157,9 +157,9 @@ struct ZoneMotions {
     stop_ratios: Vec<f64>,
     has_stopped_otherwise: bool,
     /// The number of zones of several contacts whose particles do not keep their distances.
-    bent_large_zones: usize,
-    bent_single_zones: usize,
-    bent_stops: usize,
+    deformed_large_zones: usize,
+    deformed_single_zones: usize,
+    deformed_stops: usize,
     errors: MotionErrors,
 }
 
@@ -175,11 +175,11 @@ impl ZoneMotions {
             self.results.push(result);
             match result {
                 ZoneResult::Wrong(WrongZones::KeepVelocities) => self.record_kept_velocities(&first, zone),
-                ZoneResult::Bent if zone.must_stop(scene) => self.bent_stops += 1,
-                ZoneResult::Bent | ZoneResult::Rigid => {
+                ZoneResult::Deformed if zone.must_stop(scene) => self.deformed_stops += 1,
+                ZoneResult::Deformed | ZoneResult::Rigid => {
                     let is_one = first.zone_contacts(zone).len() < 2;
-                    if result == ZoneResult::Bent {
-                        *(if is_one { &mut self.bent_single_zones } else { &mut self.bent_large_zones }) += 1;
+                    if result == ZoneResult::Deformed {
+                        *(if is_one { &mut self.deformed_single_zones } else { &mut self.deformed_large_zones }) += 1;
                     }
                     self.errors.measure_motion(scene, &first, zone);
                 }
@@ -228,17 +228,17 @@ impl ZoneMotions {
             };
             return Some(new_observation(StageFault::Zones(fault), details, wrong));
         }
-        if wrong == 0 || self.bent_stops > 0 {
+        if wrong == 0 || self.deformed_stops > 0 {
             return (wrong > 0).then(|| new_observation(StageFault::AfterRounds, Vec::new(), wrong));
         }
         let (mut what, details) = self.errors.describe();
-        if self.bent_single_zones + self.bent_large_zones > 0 {
+        if self.deformed_single_zones + self.deformed_large_zones > 0 {
             what.insert(
                 what.iter().position(|motion| *motion != WrongMotion::Center).unwrap_or(what.len()),
                 WrongMotion::Distances,
             );
         }
-        let or_zones = self.bent_large_zones > 0 && self.bent_single_zones == 0;
+        let or_zones = self.deformed_large_zones > 0 && self.deformed_single_zones == 0;
         Some(new_observation(StageFault::Motion { wrong: what, or_zones }, details, wrong))
     }
 }
@@ -249,7 +249,8 @@ struct MotionErrors {
     shift_ratios: Vec<f64>,
     has_side_shift: bool,
     turn_ratios: Vec<f64>,
-    is_bent: bool,
+    /// Whether a zone did not move as one rigid body. The turns then mean nothing.
+    has_deformed_zone: bool,
     velocity_ratios: Vec<f64>,
     has_other_velocity: bool,
 }
@@ -280,7 +281,7 @@ impl MotionErrors {
                 self.turn_ratios.push(f64::NAN);
             }
         } else {
-            self.is_bent = true;
+            self.has_deformed_zone = true;
         }
         self.measure_velocities(scene, start, end, zone);
     }
@@ -307,7 +308,7 @@ impl MotionErrors {
                 _ => StageDetail::CenterDirection,
             });
         }
-        if !self.is_bent && !all_equal_one(&self.turn_ratios) {
+        if !self.has_deformed_zone && !all_equal_one(&self.turn_ratios) {
             wrong.push(describe_turn(&self.turn_ratios));
             if self.turn_ratios.iter().all(|ratio| ratio.is_finite()) {
                 details.push(StageDetail::Rotations(ratios(&self.turn_ratios)));

@@ -57,8 +57,8 @@ pub(super) enum ZoneResult {
     Wrong(WrongZones),
     /// The zone moved as one rigid body, but not as expected.
     Rigid,
-    /// The zone's particles did not keep their distances, or did not stop.
-    Bent,
+    /// The zone's particles did not keep their distances, or did not stop as a whole.
+    Deformed,
 }
 
 /// The first round of the geometric part of a step whose middle, and whose first geometric pass, are right.
@@ -290,7 +290,7 @@ impl<'a> FirstRound<'a> {
         {
             ZoneResult::Wrong(WrongZones::PartlyStopped)
         } else {
-            ZoneResult::Bent
+            ZoneResult::Deformed
         }
     }
 
@@ -303,7 +303,7 @@ impl<'a> FirstRound<'a> {
             let (before, after) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
             (before - after).abs() <= ROUND_OFF_LIMIT * (1.0 + before)
         });
-        if is_rigid { ZoneResult::Rigid } else { ZoneResult::Bent }
+        if is_rigid { ZoneResult::Rigid } else { ZoneResult::Deformed }
     }
 }
 

@@ -30,7 +30,7 @@ const MIN_PAIRS: usize = 1 << 10;
 #[derive(Debug, Clone)]
 pub(super) struct NearbyPairs {
     radii: Vec<f64>,
-    /// The strips, by descending size.
+    /// The particles of each size class, from the largest radii to the smallest.
     size_classes: Vec<Strips>,
     edges: Vec<Edge>,
     margin: f64,

@@ -156,20 +156,21 @@ impl Strips {
         tested
     }
 
-    /// Returns the lowest and the highest y of a row, slightly widened.
+    /// Returns bounds on y for the particles of a row. On each side they are at least one row too wide, because row
+    /// numbers are rounded toward zero and y is computed with round-off.
     fn row_bounds(&self, row: i64) -> [f64; 2] {
-        let height = |row: i64| match row {
+        let edge_y = |row: i64| match row {
             ..=FIRST_ROW => f64::NEG_INFINITY,
             LAST_ROW.. => f64::INFINITY,
             #[expect(clippy::cast_precision_loss, reason = "heights of such rows are no more precise")]
             row => row as f64 / self.density,
         };
-        [height(row.saturating_sub(2)), height(row.saturating_add(2))]
+        [edge_y(row.saturating_sub(2)), edge_y(row.saturating_add(2))]
     }
 
     /// Calls `visit` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
     ///
-    /// `narrow` may shorten a row: it receives the lowest and the highest y of a row, and returns the part of the
+    /// `narrow` may shorten a row: it receives a lower and an upper bound on y in a row, and returns the part of the
     /// rectangle's width that counts there.
     pub fn visit_rectangle(
         &self,

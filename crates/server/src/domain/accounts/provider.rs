@@ -33,8 +33,8 @@ impl App {
         self.provider.as_ref().ok_or_else(|| Problem::not_found("provider"))
     }
 
-    /// Returns the URL to which the provider redirects people back.
-    fn answer_address(&self) -> String {
+    /// Returns the URL to which the provider sends people back.
+    fn return_url(&self) -> String {
         format!("{}/sign-in/provider/answer", self.public)
     }
 
@@ -66,11 +66,12 @@ impl Visitor {
         let browser = (&self.secrets, self.secrets.provider_secret.as_ref());
         let started = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
         let address =
-            provider.sign_in_url(&self.app.answer_address(), self.app.compute_secrets(&started.state).await?).await?;
+            provider.sign_in_url(&self.app.return_url(), self.app.compute_secrets(&started.state).await?).await?;
         Ok(LoginAnswer { address: address.into(), browser: started.browser })
     }
 
-    /// Signs in the person for whom the provider issued a code. The code must answer a sign-in that this browser began.
+    /// Signs in the person for whom the provider issued `code`. `state` must belong to a sign-in that this browser
+    /// began and that is not used yet.
     ///
     /// # Errors
     /// Fails if the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
@@ -79,7 +80,7 @@ impl Visitor {
         let provider = app.configured_provider()?;
         let pending = app.pending_sign_in(state, browser, Problem::rejected_sign_in).await?;
         ensure(pending.service == PROVIDER_SERVICE, Problem::rejected_sign_in(UNKNOWN_SIGN_IN))?;
-        let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_secrets(state).await?).await?;
+        let person = provider.person(&app.return_url(), code.to_owned(), app.compute_secrets(state).await?).await?;
         let connects = match pending.account {
             0 => None,
             account => {

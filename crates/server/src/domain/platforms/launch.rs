@@ -134,7 +134,8 @@ impl Visitor {
         Ok(LoginAnswer { address: address.into(), browser })
     }
 
-    /// Signs in the person whom a platform names. The platform's token must answer a sign-in that this browser began.
+    /// Signs in the person whom a platform names. `state` must belong to a sign-in that this browser
+    /// began and that is not used yet.
     ///
     /// # Errors
     ///
@@ -359,13 +360,13 @@ pub(in crate::domain) async fn enroll(
     view::log_event(transaction, &LogEntry { course: Some(course), ..LogEntry::new("member", account, &text) }).await
 }
 
-/// A choice that a member of staff must make.
+/// A launch that waits until a member of staff has chosen the course, the assignment or the link.
 pub(in crate::domain) struct PendingLaunch {
     pub(in crate::domain) platform: Platform,
     pub(in crate::domain) arrival: Arrival,
 }
 
-/// Returns the pending choice that belongs to a secret and an account.
+/// Returns the waiting launch that belongs to a secret and an account.
 pub(in crate::domain) async fn find_pending_launch(
     transaction: &mut Transaction,
     account: i64,

@@ -31,7 +31,7 @@ pub struct RosterRead {
     pub leaving: Vec<String>,
 }
 
-/// The effect of reading the list of members from a platform.
+/// The changes that reading the list of members from a platform may make.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RosterMode {
     /// Only report who would join and who would leave.
