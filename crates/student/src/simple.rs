@@ -231,9 +231,10 @@ impl SimplePass<'_> {
         if is_held {
             return;
         }
-        let second = if is_sequential { impulse(self, state) } else { first };
+        let is_after = is_sequential || self.makes(kind.response, Slip::AfterParticle);
+        let second = if is_after { impulse(self, state) } else { first };
         self.push(kind, state, (1, two), n, -(second_share * second / (m2 / m1 + low + high * m2 / m3) * u));
-        let third = if is_sequential { impulse(self, state) } else { first };
+        let third = if is_sequential { impulse(self, state) } else { second };
         self.push(kind, state, (2, three), n, -(third_share * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 

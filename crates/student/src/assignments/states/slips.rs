@@ -102,6 +102,7 @@ slips! {
     FixedAsFree "treats fixed particles like free ones, with their mass";
     FixedUnchanged "does not change fixed particles, which the assignment does not require here";
     Sequential "computes later changes with already changed velocities";
+    AfterParticle "changes the edge with the already changed velocity of the particle";
     StartVelocity "uses the velocities before the pass instead of those after earlier pairs";
     WholeVelocity "changes the whole velocity instead of its part along the normal";
     SharesNotSquared "does not square the shares of the ends in the weighted masses";

@@ -300,7 +300,7 @@ terms! {
         RespondEdges "respond-edges" "The response between a particle and an edge":
             "(1 + COR) ((v_e - v_1) . u) u, with shares 1 - alpha and alpha" [0 0 0] true &[RESPONSE, BODIES, ALPHA,
             &[Slip::SharesNotSquared, Slip::SharesExchanged, Slip::FullShares, Slip::EqualShares, Slip::OneEnd,
-            Slip::OneEndFixesBoth] ];
+            Slip::OneEndFixesBoth, Slip::AfterParticle] ];
         RespondEdgeStill "respond-edge-still" "The velocity of the edge in the response": "v_2 + alpha (v_3 - v_2)"
             [0 0 0] false &[&[Slip::Missing, Slip::Middle]];
     }
