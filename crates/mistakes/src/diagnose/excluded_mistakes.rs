@@ -1,6 +1,7 @@
 //! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
     Explanation,
+    corrected_trace::correct_trace,
     explain::is_formula_area,
     joint_explanation::{area_stage, explain_together},
     known::{MistakeEffect, find_effect, is_empty_stage},
@@ -12,7 +13,10 @@ use super::{
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Mistake, Student, find, record_limited_trace};
-use std::{cell::Cell, collections::BTreeMap};
+use std::{
+    cell::Cell,
+    collections::{BTreeMap, BTreeSet},
+};
 
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
 const MAX_TRACES: usize = 6;
@@ -136,7 +140,13 @@ pub fn refuted_keys(
                     .iter()
                     .filter(|explanation| explanation.topic == ExplanationTopic::Mistake)
                     .flat_map(|explanation| &explanation.same_as);
-                refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
+                // A trace that none of the likely mistakes explains keeps its own explanations.
+                let left = traces().filter(|list| correct_trace(list, &likely, &refuted).agreed_count == 0).flatten();
+                let own = left.flat_map(|explanation| explanation.same_as.iter().chain([&explanation.key]));
+                let named: BTreeSet<&String> = rivals.chain(own).collect();
+                let mut named: Vec<String> = named.into_iter().cloned().collect();
+                named.retain(|key| !refuted.contains(key) && is_denied(key, &work));
+                refuted.extend(named);
                 if likely.iter().any(Explanation::is_not_finite) && are_non_finite_values_explained(&likely, wrong) {
                     refuted.push(Explanation::NOT_FINITE.to_owned());
                 }

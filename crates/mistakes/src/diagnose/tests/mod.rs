@@ -3,7 +3,7 @@ use super::naming::has_same_meaning;
 use super::sampling::{Source, TraceSamples, sample_trace};
 use super::{
     Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, mistake_is_visible, probe_scenes,
-    stages,
+    refuted_keys, stages,
 };
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::assignments::Assignment;
@@ -98,6 +98,13 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     assert!(partly[0].contradicted_keys.contains(&"failsafe-empty".to_owned()), "{partly:#?}");
     let told = explain_together([empty.as_slice(), partly.as_slice()], &[]);
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
+    // A scene that is right shows it, too, although the failsafe is likely in a single wrong trace only.
+    let scene = |probe: &str| &scenes.iter().find(|(name, _)| name == probe).expect("a probe scene").1;
+    let (zones, meet) = (scene("zones-turn-little-and-far"), said(&[row("pp-linear-sign")], "particles-meet"));
+    let lists = || std::iter::repeat_n(&meet, 12).chain([&empty]).map(Vec::as_slice);
+    assert!(explain_together(lists(), &[]).iter().all(|one| one.key != "failsafe-empty"));
+    let wrong: Vec<_> = lists().map(|list| (scene("particles-meet"), list)).collect();
+    assert!(refuted_keys(None, &wrong, &[zones]).contains(&"failsafe-empty".to_owned()));
 }
 
 /// If a trace is too long to be stored, its beginning is explained, and the report does not call it too short.
