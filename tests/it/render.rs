@@ -87,9 +87,12 @@ fn a_damaged_trace_is_drawn_as_far_as_it_goes() {
 fn invalid_input_is_rejected_before_anything_is_written() {
     let workspace = Workspace::with_trace(BEAM);
     for (words, says) in [
-        ("scene.xml --output x.gif --size 0x480", "0x480 is out of range; width and height must be 16 to 7680 pixels"),
+        (
+            "scene.xml --output x.gif --size 0x480",
+            "0x480 is out of range; width and height must be between 16 and 7680 pixels",
+        ),
         ("scene.xml --output x.gif --size 640x99999999999", "is not a size; write WIDTHxHEIGHT"),
-        ("scene.xml --output x.gif --fps 0", "--fps must be 1 to 240"),
+        ("scene.xml --output x.gif --fps 0", "--fps must be between 1 and 240"),
         ("scene.xml --output x.gif --every 0", "--every"),
         ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and --every 4"),
         ("scene.xml --output x.png", "x.png can hold one picture: add --step N"),

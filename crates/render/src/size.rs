@@ -21,7 +21,7 @@ pub enum SizeError {
     #[error("`{0}` is not a size; write WIDTHxHEIGHT, for example 640x480")]
     Unreadable(String),
     /// A side is too small or too large.
-    #[error("{0}x{1} is out of range; width and height must be {MIN_SIDE} to {MAX_SIDE} pixels")]
+    #[error("{0}x{1} is out of range; width and height must be between {MIN_SIDE} and {MAX_SIDE} pixels")]
     OutOfRange(u32, u32),
 }
 
@@ -80,7 +80,7 @@ mod tests {
         let refused = |text: &str| text.parse::<Size>().unwrap_err().to_string();
         assert_eq!(refused("640"), "`640` is not a size; write WIDTHxHEIGHT, for example 640x480");
         assert_eq!(refused("-640x480"), "`-640x480` is not a size; write WIDTHxHEIGHT, for example 640x480");
-        let range = "is out of range; width and height must be 16 to 7680 pixels";
+        let range = "is out of range; width and height must be between 16 and 7680 pixels";
         assert_eq!(refused("0x480"), format!("0x480 {range}"));
         assert_eq!(refused("640x4294967295"), format!("640x4294967295 {range}"));
     }

@@ -119,7 +119,7 @@ fn describe_unwritten(grade: &Grade) -> String {
         Some((likely, _)) if likely.is_unfinished() => explanation::describe(likely),
         _ => "Not written yet: the detection.".to_owned(),
     };
-    format!("{missing} No trace of its {scenes} contains a polynomial or a collision.")
+    format!("{missing} The traces of {scenes} contain no polynomials and no collisions.")
 }
 
 /// Describes in one sentence why a grade is not fully accepted. Returns `None` if everything is accepted.

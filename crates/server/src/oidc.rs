@@ -261,7 +261,7 @@ impl Provider {
     }
 
     fn read(&self, subject: String, claims: PersonClaims) -> Result<ProviderPerson, ProviderFault> {
-        ensure((1..=255).contains(&subject.len()), untrusted_answer(anyhow!("sub must be 1 to 255 characters long")))?;
+        ensure((1..=255).contains(&subject.len()), untrusted_answer(anyhow!("sub must have 1 to 255 characters")))?;
         let email = claims.email.map(|email| email.to_ascii_lowercase());
         let parts = email.as_deref().and_then(|email| email.rsplit_once('@'));
         let mailbox = parts.filter(|(_, domain)| claims.is_confirmed && self.domain.as_deref() == Some(domain));

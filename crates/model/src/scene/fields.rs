@@ -157,7 +157,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                 let help = match objects.count {
                     0 => format!("there is no {}", objects.noun),
                     1 => "must be 0; numbering starts at 0".to_owned(),
-                    count => format!("must be from 0 to {}; numbering starts at 0", count - 1),
+                    count => format!("must be between 0 and {}; numbering starts at 0", count - 1),
                 };
                 (format!("is {written}, but the scene has no such {}", objects.noun), help)
             });
@@ -188,7 +188,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             if (0.0..=1.0).contains(&value) {
                 return Some(value);
             }
-            self.report_bad_value(name, "must be from 0 to 1");
+            self.report_bad_value(name, "must be between 0 and 1");
             None
         };
         let (red, green, blue) = (component("r"), component("g"), component("b"));

@@ -188,11 +188,12 @@ fn what_is_there_twice() {
 fn indices() {
     says(
         "<edge i='0' j='2'/>",
-        "4:16: `j` of edge 0 is 2, but the scene has no such particle (must be from 0 to 1; numbering starts at 0)",
+        "4:16: `j` of edge 0 is 2, but the scene has no such particle (must be between 0 and 1; numbering starts at 0)",
     );
     says(
         "<edge i='-1' j='1'/>",
-        "4:10: `i` of edge 0 is -1, but the scene has no such particle (must be from 0 to 1; numbering starts at 0)",
+        "4:10: `i` of edge 0 is -1, but the scene has no such particle (must be between 0 and 1; \
+            numbering starts at 0)",
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
     // An unreadable index proves nothing about the other one.
@@ -204,17 +205,17 @@ fn indices() {
         ),
         (
             "<gravitationalforce i='0' j='9' G='1'/>",
-            "4:30: `j` of gravitationalforce 0 is 9, but the scene has no such particle (must be from 0 to 1; \
+            "4:30: `j` of gravitationalforce 0 is 9, but the scene has no such particle (must be between 0 and 1; \
              numbering starts at 0)",
         ),
         (
             "<vortexforce i='9' j='0' kbs='1' kvc='1'/>",
-            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (must be from 0 to 1; \
+            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (must be between 0 and 1; \
              numbering starts at 0)",
         ),
         (
             "<particlecolor i='2' r='0' g='0' b='0'/>",
-            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (must be from 0 to 1; \
+            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (must be between 0 and 1; \
              numbering starts at 0)",
         ),
         (
@@ -227,7 +228,7 @@ fn indices() {
         ),
         (
             "<particlepath i='2' duration='1' r='0' g='0' b='0'/>",
-            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (must be from 0 to 1; \
+            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (must be between 0 and 1; \
              numbering starts at 0)",
         ),
     ] {
@@ -244,8 +245,8 @@ fn values_that_make_no_sense() {
     assert_eq!(particle("m='1' radius='-1'"), "4:63: `radius` of particle 2 is `-1` (a radius cannot be negative)");
     says(
         "<backgroundcolor r='0' g='1.5' b='-1'/>",
-        "4:27: `g` of backgroundcolor is `1.5` (must be from 0 to 1)\n4:35: `b` of backgroundcolor is `-1` (must be \
-        from 0 to 1)",
+        "4:27: `g` of backgroundcolor is `1.5` (must be between 0 and 1)\n4:35: `b` of backgroundcolor is `-1` \
+            (must be between 0 and 1)",
     );
     says(
         "<particlepath i='0' duration='-1' r='0' g='0' b='0'/>",

@@ -238,10 +238,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     if !settings.deployments.contains(&claims.deployment) {
         return Err(Rejection::Deployment(claims.deployment.chars().take(255).collect()));
     }
-    ensure(
-        (1..=255).contains(&claims.sub.len()),
-        Rejection::Content("sub must be 1 to 255 characters long".to_owned()),
-    )?;
+    ensure((1..=255).contains(&claims.sub.len()), Rejection::Content("sub must have 1 to 255 characters".to_owned()))?;
     let missing = |what: &str| Rejection::Content(format!("{what} is missing"));
     let (resource, deep_linking) = match claims.message_type.as_str() {
         "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
@@ -257,7 +254,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     let context = claims.context.ok_or_else(|| missing("context"))?;
     let is_name = |text: &str| (1..=255).contains(&text.len());
     if !is_name(&context.id) || resource.as_ref().is_some_and(|resource| !is_name(&resource.id)) {
-        return Err(Rejection::Content("the names of courses and links must be 1 to 255 characters long".to_owned()));
+        return Err(Rejection::Content("the names of courses and links must have 1 to 255 characters".to_owned()));
     }
     let endpoint = claims.endpoint.unwrap_or_default();
     let may_use = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);

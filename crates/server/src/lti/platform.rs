@@ -81,7 +81,7 @@ impl PlatformSettings {
         let is_identifier =
             |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
-            ensure(is_identifier(text), Problem::invalid(format!("{name} must be 1 to 255 characters long")))?;
+            ensure(is_identifier(text), Problem::invalid(format!("{name} must have 1 to 255 characters")))?;
         }
         for (name, text) in
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
@@ -99,7 +99,7 @@ impl PlatformSettings {
         }
         ensure(
             self.audience.as_deref().is_none_or(is_identifier),
-            Problem::invalid("audience must be 1 to 255 characters long"),
+            Problem::invalid("audience must have 1 to 255 characters"),
         )?;
         let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| origin(&url) == *host);
         ensure(

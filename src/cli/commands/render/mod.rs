@@ -38,7 +38,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let form = output_format(arguments)?;
     let scene = input::read_scene(&arguments.scene)?;
     let picks = select_steps(arguments, form, &scene.scene)?;
-    let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps must be 1 to {}", crate::render::film::MAX_RATE) };
+    let Some(rate) = Rate::new(arguments.fps) else {
+        bail!("--fps must be between 1 and {}", crate::render::film::MAX_RATE)
+    };
     // The output is checked first. If it is invalid, this is reported before the work begins.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {

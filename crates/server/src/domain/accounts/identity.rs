@@ -323,7 +323,7 @@ pub(in crate::domain) fn is_control(c: char) -> bool {
 pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     let is_fit = (1..=200).contains(&length) && !text.chars().any(is_control) && text.trim() == text;
-    let rule = "must be 1 to 200 characters long, without invisible characters and spaces at its ends";
+    let rule = "must have 1 to 200 characters, without invisible characters and spaces at its ends";
     ensure(is_fit, Problem::invalid(format!("{what} {rule}")))
 }
 
@@ -331,6 +331,6 @@ pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Probl
 pub(in crate::domain) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
     let is_fit = (1..=60).contains(&text.len()) && text.chars().all(plain) && !text.starts_with(['-', '.', '_']);
-    let rule = "must be 1 to 60 small letters, digits, dots, dashes and underscores, and begin with a letter or digit";
+    let rule = "must have 1 to 60 small letters, digits, dots, dashes or underscores, and begin with a letter or digit";
     ensure(is_fit, Problem::invalid(format!("{what} {rule}")))
 }

@@ -255,9 +255,9 @@ impl Settings {
         }
         let late = "late days (late_days) must be at most 365, and the late penalty (late_percent) at most 100 %";
         ensure(self.late_days <= 365 && self.late_percent <= 100, Problem::invalid(late))?;
-        let seconds = "the time limit (seconds) must be 1 to 3600 seconds";
+        let seconds = "the time limit (seconds) must be between 1 and 3600 seconds";
         ensure((1..=3600).contains(&self.seconds), Problem::invalid(seconds))?;
-        let size = "the largest upload (max_bytes) must be 1 byte to 1 GiB";
+        let size = "the largest upload (max_bytes) must be between 1 byte and 1 GiB";
         ensure((1..=1 << 30).contains(&self.max_bytes), Problem::invalid(size))?;
         Ok(())
     }

@@ -30,7 +30,7 @@ impl App {
         if counts.int("examples")? == 0 {
             ensure(
                 counts.int("courses")? <= 0,
-                Problem::conflict("this server already has courses", "start it without --example"),
+                Problem::conflict("this server already has courses", "start the server without --example"),
             )?;
             let settings = Settings::default().validate(&self.suites)?;
             let course = admin::make_course(&mut transaction, COURSE).await?;
@@ -43,7 +43,7 @@ impl App {
                 ON CONFLICT (login) DO NOTHING RETURNING id";
             let created = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
             let Some(student) = created else {
-                return Err(Problem::conflict("an account `student` already exists", "start it without --example"));
+                return Err(Problem::conflict("an account `student` exists", "start the server without --example"));
             };
             let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})";
             transaction.execute(statement, values![course, student.int("id")?]).await?;

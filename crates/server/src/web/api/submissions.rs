@@ -90,7 +90,7 @@ pub(in crate::web) async fn receive(
     };
     let key = page_key.as_deref().or(key);
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
-        return Err(Problem::invalid("a key must be 1 to 200 characters long"));
+        return Err(Problem::invalid("a key must have 1 to 200 characters"));
     }
     member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, arrived_at }).await
 }

@@ -77,7 +77,7 @@ pub(super) fn describe_score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(max_points)) => format!("{} / {}", format_points(points), format_points(max_points)),
         _ if score["gradingProgress"] == PENDING => "being graded".to_owned(),
-        _ => "staff must check it".to_owned(),
+        _ => "staff must check the submission".to_owned(),
     }
 }
 
@@ -151,6 +151,6 @@ mod tests {
     fn scores_without_points_say_who_must_act() {
         let states = ["Pending", "PendingManual"];
         let texts = states.map(|state| super::describe_score(&serde_json::json!({"gradingProgress": state})));
-        assert_eq!(texts, ["being graded", "staff must check it"]);
+        assert_eq!(texts, ["being graded", "staff must check the submission"]);
     }
 }

@@ -112,7 +112,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let scores = teacher.get(&format!("{base}/scores")).expect(200).json();
     assert_eq!([&scores[0]["login"], &scores[0]["platform"]], ["ada", "lms"]);
     let page = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    assert!(page.contains("40 of 100") && page.contains("staff must check it"), "{page}");
+    assert!(page.contains("40 of 100") && page.contains("staff must check the submission"), "{page}");
     // A score that is sent again is newer than all earlier ones.
     let before = platform.wait_for("ada", |_| true)["timestamp"].clone();
     teacher.post_form("/c/physics/a/m1/scores", "").expect(303);

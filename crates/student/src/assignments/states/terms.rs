@@ -139,19 +139,19 @@ terms! {
         JacobianElastic "jacobian-elastic" "The derivative of a spring's elastic part by positions":
             "k (n n^T + (l - l0) / l (I - n n^T))" [0 0 0] false &[SUM, BLOCKS, DISTANCE] ;
         JacobianElasticAlong "jacobian-elastic-along"
-            "In the derivative of a spring's elastic part the term along the spring": "k n n^T" [0 0 0] false
+            "The term along the spring in the derivative of its elastic part": "k n n^T" [0 0 0] false
             &[SUM, DISTANCE] ;
         JacobianElasticAcross "jacobian-elastic-across"
-            "In the derivative of a spring's elastic part the term across the spring": "k (l - l0) / l (I - n n^T)"
+            "The term across the spring in the derivative of its elastic part": "k (l - l0) / l (I - n n^T)"
             [0 0 -1] false &[SUM, DISTANCE, &[Slip::Absolute] ];
         JacobianDamping "jacobian-damping" "The derivative of a spring's damping by positions":
             "-D with D = -b / l ((n w^T + (n . w) I) (I - n n^T)) and w = v_b - v_a" [0 0 -1] false
             &[SUM, BLOCKS, DISTANCE] ;
         JacobianDampingOuter "jacobian-damping-outer"
-            "In the derivative of a spring's damping by positions the outer product with the velocity":
+            "The outer product with the velocity in the derivative of a spring's damping by positions":
             "n w^T (using w n^T instead makes no difference)" [0 0 0] false &[SUM] ;
         JacobianDampingScalar "jacobian-damping-scalar"
-            "In the derivative of a spring's damping by positions the term of the speed along the spring": "(n . w) I"
+            "The term of the speed along the spring in the derivative of its damping by positions": "(n . w) I"
             [0 0 0] false &[SUM] ;
         JacobianVelocity "jacobian-velocity" "The derivative of a spring's damping by velocities": "b n n^T" [0 0 0]
             true &[SUM, BLOCKS, DISTANCE, &[Slip::OtherMatrix] ];
@@ -160,10 +160,10 @@ terms! {
         JacobianGravitation "jacobian-gravitation" "The derivative of the gravitational force by positions":
             "G m_a m_b / r^3 (I - 3 n n^T)" [2 0 -3] true &[SUM, BLOCKS, DISTANCE, &[Slip::OtherMatrix] ];
         JacobianGravitationAlong "jacobian-gravitation-along"
-            "In the derivative of the gravitational force the term along the line of the particles": "3 n n^T" [0 0 0]
+            "The term along the line of the particles in the derivative of the gravitational force": "3 n n^T" [0 0 0]
             false &[SUM] ;
         JacobianGravitationAll "jacobian-gravitation-all"
-            "In the derivative of the gravitational force the term that is the same in all directions": "I" [0 0 0]
+            "The term that is the same in all directions in the derivative of the gravitational force": "I" [0 0 0]
             false &[SUM] ;
     }
     Part::Jacobians(ForceKind::Drag) => {
