@@ -126,7 +126,7 @@ const PIPE_TIMEOUT: Duration = Duration::from_secs(5);
 /// Returns a reader that waits until a pipe's writer writes. If the pipe has no writer, it does not wait forever.
 ///
 /// # Errors
-/// Fails if no writer writes anything within five seconds, or if the pipe cannot be read.
+/// Fails if the pipe has no writer for five seconds, or if it cannot be read.
 pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));
