@@ -112,11 +112,19 @@ pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
     if explained > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
+/// Returns whether all scenes that a mistake explains give only extra points.
+pub fn is_only_extra(grade: &Grade, mistake: &Explanation) -> bool {
+    let names = |group: &GroupGrade| group.scenes.iter().any(|scene| is_named_in(mistake, &scene.explanations));
+    grade.groups.iter().any(names) && grade.groups.iter().all(|group| group.extra || !names(group))
+}
+
 /// Returns at most three likely mistakes, with the number of wrong scenes that each explains. The mistake that explains
 /// most scenes comes first; later ones explain most of the rest, and explain those scenes completely
-/// ([`explain_together`]).
+/// ([`explain_together`]). Mistakes that cost only extra points come last.
 pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted_keys)
+    let mut likely = explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted_keys);
+    likely.sort_by_key(|mistake| is_only_extra(grade, mistake));
+    likely
         .into_iter()
         .filter(|likely| {
             likely.reproduced > 0 || likely.names_stage() || likely.is_not_finite() || likely.is_unexplained()

@@ -142,9 +142,10 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> ComparedValues {
         FindingDetail::PassPositions { place }
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
-        | FindingDetail::MixedForms { place } => {
-            ComparedValues { remarks_before: vec![describe_logging_pass(place)], ..ComparedValues::default() }
-        }
+        | FindingDetail::MixedForms { place } => ComparedValues {
+            remarks_before: vec![format!("polynomial {} of the record", place.index)],
+            ..ComparedValues::default()
+        },
         _ => ComparedValues::default(),
     }
 }
@@ -156,10 +157,6 @@ fn count_row(name: &'static str, expected: usize, actual: usize) -> Row {
 fn number_row(name: &'static str, expected: f64, actual: f64) -> Row {
     let differs = expected.to_bits() != actual.to_bits();
     Row { name, expected: Value::Number(expected), actual: Value::Number(actual), differs }
-}
-
-fn describe_logging_pass(place: &fosssim_judge::PolynomialPlace) -> String {
-    format!("polynomial {} of the record", place.index)
 }
 
 /// Compares two polynomials power by power. Coefficients that differ after division by the common factor are marked.
@@ -198,7 +195,7 @@ fn compare_with_factor(
         format_g(factor)
     );
     ComparedValues {
-        remarks_before: vec![describe_logging_pass(place)],
+        remarks_before: vec![format!("polynomial {} of the record", place.index)],
         rows: (0..powers).rev().map(row).collect(),
         remarks_after: if is_one { Vec::new() } else { vec![carried] },
         original: None,

@@ -10,8 +10,9 @@ use std::{cmp::Reverse, collections::BTreeMap};
 /// order.
 pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 
-/// Returns the listed scenes, grouped by cause. Groups with likely mistakes are first, then causes by the number of
-/// their scenes. Skipped scenes follow, and then accepted scenes on which the rule books differ.
+/// Returns the listed scenes, grouped by cause. Causes that cost more than extra points are first; among them, causes
+/// with likely mistakes, then causes by the number of their scenes. Skipped scenes follow, and then accepted scenes on
+/// which the rule books differ.
 pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
@@ -19,11 +20,19 @@ pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
         found.entry((scene.verdict, describe_cause(scene))).or_insert((index, Vec::new())).1.push(scene);
     }
     let mut causes: Vec<_> = found.into_values().collect();
+    let extra: Vec<bool> = grade.groups.iter().flat_map(|group| group.scenes.iter().map(|_| group.extra)).collect();
     causes.sort_by_key(|(index, scenes)| {
         let first = scenes[0];
         let is_right = first.verdict.is_accepted();
         let is_left_out = matches!(first.reason, Reason::Skipped(_));
-        (is_right, is_left_out, rank(&likely, &first.corrected_explanations), Reverse(scenes.len()), *index)
+        (
+            is_right,
+            is_left_out,
+            extra[*index],
+            rank(&likely, &first.corrected_explanations),
+            Reverse(scenes.len()),
+            *index,
+        )
     });
     for (_, scenes) in &mut causes {
         let best = (0..scenes.len()).min_by_key(|&index| clarity_rank(scenes[index])).unwrap_or(0);
@@ -103,5 +112,9 @@ mod tests {
             scene.result.difference_cause = Some(Cause::TrailingBytes);
         }
         assert_eq!(group_by_cause(&grade).iter().map(Vec::len).collect::<Vec<_>>(), [2]);
+        // A cause that costs more than extra points is first.
+        grade.groups[0].extra = true;
+        grade.groups[1].scenes[0].result.verdict = Verdict::RuntimeError;
+        assert_eq!(group_by_cause(&grade)[0][0].scene, "Impulses/a");
     }
 }

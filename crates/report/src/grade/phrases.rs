@@ -109,6 +109,9 @@ fn find_wrong_state(scene: &SceneGrade) -> Option<&DisclosedFinding> {
 /// wrong only because of this mistake, or the grade has no points.
 pub fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     grade.points?;
+    if together::is_only_extra(grade, mistake) {
+        return Some("worth only extra points".to_owned());
+    }
     let lost = together::mistake_points(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
 }

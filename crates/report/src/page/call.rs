@@ -66,7 +66,9 @@ impl CallContent<'_> {
     /// Renders the decision that follows from the trace's own polynomials, and their curves. Returns an empty text if
     /// all of them are right.
     fn draw_own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
-        let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
+        let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| {
+            !own.is_empty() && mark_differences(curve.logged.coefficients(), own).contains(&true)
+        });
         let curves = match (wrong.next(), wrong.next()) {
             (None, _) => return String::new(),
             (Some((curve, own)), None) => draw_both(
@@ -136,10 +138,6 @@ fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Int
 /// Returns the ends of the intervals in which a polynomial is positive. The finite ends are zeros of the polynomial.
 fn interval_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|interval| [interval.lo, interval.hi]).collect()
-}
-
-fn is_wrong(curve: &study::StudiedPolynomial, own: &[f64]) -> bool {
-    !own.is_empty() && mark_differences(curve.logged.coefficients(), own).contains(&true)
 }
 
 /// Returns the intervals in which a polynomial of the trace is positive; empty if its zeros can't be found.

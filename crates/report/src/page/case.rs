@@ -202,14 +202,6 @@ impl TraceContent<'_> {
     }
 }
 
-/// Names the step of a finding.
-fn describe_step(step: u32, steps: u32) -> String {
-    match step {
-        0 => "the first record".to_owned(),
-        step => format!("step {step} of {steps}"),
-    }
-}
-
 /// Describes a finding whose values are in a table next to the text.
 fn describe_finding(finding: &Finding) -> String {
     match &finding.detail {
