@@ -95,7 +95,7 @@ impl Output {
         matches!(self, Self::Stdout)
     }
 
-    /// Returns the path of the temporary file, for a program that writes it.
+    /// Returns the path of the temporary file, for a program that writes it; `None` if the output is not a file.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished_path()),

@@ -66,13 +66,13 @@ pub fn recordings() -> impl Iterator<Item = &'static str> {
 }
 
 /// Returns a file from the folder of recordings. Its path is `manifest.txt`, `Group/name.steps` or
-/// `Group/name.bin.zst`.
+/// `Group/name.bin.zst`. Returns `None` if there is no such file.
 #[cfg(target_os = "linux")]
 pub fn recording_file(path: &str) -> Option<&'static [u8]> {
     find_content(&REFERENCES, path)
 }
 
-/// Returns the assignment in whose folder a scene is.
+/// Returns the assignment in whose folder the scene with this full name is; `None` if there is no such scene.
 pub fn find_assignment(name: &str) -> Option<Assignment> {
     if find_generated(name).is_some() {
         return Some(GENERATED_ASSIGNMENT);

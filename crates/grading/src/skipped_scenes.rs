@@ -27,8 +27,8 @@ pub(super) fn skipped_result(task: &SceneTask, reason: NotRunReason) -> SceneRes
 /// takes the whole limit, and a program that never ends in some scenes usually does not end in many others.
 const SCATTERED_FACTOR: u32 = 4;
 
-/// Returns the first scene that is skipped, and the reason. `verdicts_and_times` has the verdict and the duration of
-/// each finished scene.
+/// Returns the first scene that is skipped, and the reason; `None` if no scene is. `verdicts_and_times` has the verdict
+/// and the duration of each finished scene.
 pub(super) fn find_first_skipped(
     limits: &SkipLimits,
     fail_fast: bool,

@@ -13,6 +13,7 @@ fn read_sysinfo() -> libc::sysinfo {
 }
 
 /// Returns the number of bytes in the line of a kernel report that begins with `label`. The report gives it in kB.
+/// Returns `None` if there is no such line.
 pub(super) fn read_byte_count(text: &str, label: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(label)?.strip_suffix(" kB"))?;
     line.trim().parse::<u64>().ok().map(|kib| kib << 10)

@@ -39,6 +39,7 @@ pub fn parse(text: &str) -> Option<i64> {
 }
 
 /// Parses the value of a form's time field, such as `2026-12-01T23:59`. Its time zone is `east` minutes east of UTC.
+/// Returns milliseconds since 1970, or `None` if the text is not a time.
 pub fn parse_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
     Some(parse(&format!("{text}{seconds}"))? - east * 60_000)

@@ -71,7 +71,8 @@ impl Pages {
         Card::from_stored(&cards::read_card(&self.cards, name?)?)
     }
 
-    /// Stores a card, and returns its name. If it can't be stored, only the picture is missing.
+    /// Stores a card, and returns its name. Returns `None` if there is no card or it can't be stored; then only the
+    /// picture is missing.
     pub(super) fn store_card(&self, card: Option<Card>) -> Option<String> {
         cards::store_card_file(&self.cards, &card?.to_stored()).ok()
     }

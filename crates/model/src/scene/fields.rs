@@ -84,7 +84,8 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.raw_attribute(name).is_none_or(|attribute| attribute.value.is_empty())
     }
 
-    /// Returns the text of a required attribute.
+    /// Returns the text of a required attribute. If it is missing or cannot be read, reports the problem and returns
+    /// `None`, as the methods below do.
     pub(super) fn text(&mut self, name: &str, what: &str) -> Option<String> {
         let attribute = self.require(name, what)?;
         let text = self.decode(attribute)?.into_owned();
@@ -99,7 +100,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if self.has_attribute(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
-    /// Returns the value that the attribute names.
+    /// Returns the value of `choices` that a required attribute names.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.require(name, &join_names(&names))?;
@@ -181,7 +182,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// Returns the color in `r`, `g` and `b`.
+    /// Returns the color in the attributes `r`, `g` and `b`, each between 0 and 1.
     pub(super) fn color(&mut self) -> Option<Color> {
         let mut component = |name: &str| {
             let value = self.scalar(name)?;

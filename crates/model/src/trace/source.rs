@@ -41,7 +41,7 @@ impl<R: Read> Source<R> {
         self.offset
     }
 
-    /// Returns the error that ended the stream.
+    /// Returns the error that ended the stream, if an error ended it.
     pub(crate) fn error(&self) -> Option<TraceFormatError> {
         self.error.clone()
     }

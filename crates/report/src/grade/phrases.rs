@@ -65,7 +65,8 @@ pub fn describe_in_scene(scene: &SceneGrade, mistake: &Explanation) -> String {
     state.unwrap_or_else(|| words::explanation::describe(mistake))
 }
 
-/// Returns the sentence about a scene's likeliest mistake, for formats with a single line.
+/// Returns the sentence about a scene's likeliest mistake, for formats with a single line; `None` if no mistake is
+/// likely.
 pub fn scene_sentence(scene: &SceneGrade) -> Option<String> {
     let first = scene.corrected_explanations.first()?;
     if first.is_unexplained() {

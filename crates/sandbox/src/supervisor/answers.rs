@@ -66,7 +66,7 @@ impl SharedWaits {
         }
     }
 
-    /// Returns the time at which the next word must be checked.
+    /// Returns the time at which the next word must be checked; `None` if no thread waits.
     pub(super) fn next(&self) -> Option<Instant> {
         self.0.iter().map(|wait| wait.due).min()
     }

@@ -55,7 +55,8 @@ pub struct Platform {
     pub settings: PlatformSettings,
 }
 
-/// Parses a URL that this service may call: HTTPS with a host, and no user name, password or fragment.
+/// Parses a URL that this service may call: HTTPS (or HTTP, if `allows_http`) with a host, at most 2,000 characters,
+/// and no user name, password or fragment. Returns `None` for other URLs.
 pub(super) fn parse_service_url(text: &str, allows_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let is_secure = url.scheme() == "https" || (allows_http && url.scheme() == "http");

@@ -49,7 +49,7 @@ pub(super) struct SeenEvent {
 }
 
 impl SeenEvent {
-    /// Returns the event's ID, in the type of the database.
+    /// Returns the ID of the event that was seen, if the request names one, in the type of the database.
     pub(super) fn event(&self) -> Option<i64> {
         self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))
     }

@@ -128,7 +128,7 @@ pub(super) fn is_form(request: &Request) -> bool {
     kind.is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"))
 }
 
-/// Returns the size of the body, as the request's head announces it.
+/// Returns the size of the body, as the request's head announces it; `None` if the head does not.
 pub(super) fn announced_size(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }

@@ -87,7 +87,8 @@ pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Returns advice about where in the program a wrong stage probably is.
+/// Returns advice about where in the program a wrong stage probably is; `None` for explanations that are not about a
+/// stage.
 pub(crate) fn describe_search_area(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.topic {
         ExplanationTopic::Stage(fault) => fault.areas().first().map(|area| area.advice()),
