@@ -72,7 +72,7 @@ pub fn recording_file(path: &str) -> Option<&'static [u8]> {
     find_content(&REFERENCES, path)
 }
 
-/// Returns the assignment in whose folder the scene with this full name is; `None` if there is no such scene.
+/// Returns the assignment in whose folder the scene with this name is; `None` if there is no such scene.
 pub fn find_assignment(name: &str) -> Option<Assignment> {
     if find_generated(name).is_some() {
         return Some(GENERATED_ASSIGNMENT);
