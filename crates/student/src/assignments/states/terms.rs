@@ -132,7 +132,7 @@ terms! {
             &[SUM, FORCE, PAIR, VECTOR, DISTANCE] ;
     }
     Part::Jacobians(ForceKind::Spring) => {
-        JacobianSprings "jacobian-springs" "The second derivatives of a spring": "the block by positions or velocities"
+        JacobianSprings "jacobian-springs" "The derivative of the spring force": "the block by positions or velocities"
             [0 0 0] false &[BLOCKS] ;
         JacobianSpring "jacobian-spring" "The derivative of the spring force by positions":
             "k (n n^T + (l - l0) / l (I - n n^T)) - D" [0 0 0] true &[SUM, BLOCKS, &[Slip::OtherMatrix] ];
