@@ -2,7 +2,9 @@
 use crate::{
     cli::{
         arguments::scenes::{SceneCommand, SceneExportArguments, SceneListArguments, SceneShowArguments},
-        console, output,
+        console,
+        input::describe_missing_asset,
+        output,
         selection::Selection,
     },
     files::{FileError, FilePlace},
@@ -46,7 +48,7 @@ fn show(name: &str) -> Result<()> {
     let matching: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (matching[..].first().and_then(|only| library::find_scene(only)), matching.len()) {
         (Some(xml), 1) => console::print(xml),
-        _ => bail!("there is no built-in scene {name}; `fosssim-oracle scene list` lists all"),
+        _ => bail!("{}", describe_missing_asset("scene", name)),
     }
 }
 

@@ -33,7 +33,7 @@ pub(super) fn asset_name(name: &Path) -> Option<&str> {
     name.to_str()?.strip_prefix("asset:")
 }
 
-fn describe_missing_asset(what: &str, name: &str) -> String {
+pub(super) fn describe_missing_asset(what: &str, name: &str) -> String {
     let nearest =
         suggestions::find_nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
     let name = to_one_line(name);

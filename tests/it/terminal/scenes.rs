@@ -41,7 +41,7 @@ fn a_scene_is_shown_as_it_is_and_can_be_judged_with() {
     }
     let run = workspace.run(["scene", "show", "HolisticTests/balls"]);
     assert_eq!(run.code, Some(2));
-    assert!(run.err().contains("scene list"), "{}", run.err());
+    assert!(run.err().contains("; the nearest are "), "{}", run.err());
 }
 
 #[test]
