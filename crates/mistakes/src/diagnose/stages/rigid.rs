@@ -167,7 +167,7 @@ impl ZoneMotions {
     fn compare(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(first) = FirstRound::for_scene(scene, facts) else { return };
         for zone in &first.zones {
-            if !first.is_visible(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
+            if !first.is_visible(zone) && (first.is_as_expected(zone) || !first.is_split(zone)) {
                 continue;
             }
             let result =

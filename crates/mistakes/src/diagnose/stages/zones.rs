@@ -78,7 +78,8 @@ pub(super) struct FirstRound<'a> {
 }
 
 impl<'a> FirstRound<'a> {
-    /// Returns the zones of a step. Returns `None` if the step has no first round, or something before it is wrong.
+    /// Collects the facts about the first geometric round of a step. Returns `None` if the step has no such round, or
+    /// if the mid state or a polynomial of the first geometric pass or earlier is wrong.
     pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_mid_state())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
@@ -107,7 +108,7 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns whether a zone's particles end in the expected state, so that the zone proves nothing.
-    pub(super) fn is_at_rest(&self, zone: &ParticleGroup) -> bool {
+    pub(super) fn is_as_expected(&self, zone: &ParticleGroup) -> bool {
         self.are_at(&self.expected_state(zone), &zone.particles)
     }
 
