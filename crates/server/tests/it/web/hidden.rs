@@ -65,6 +65,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     assert!(seen.contains("is_withheld") && !seen.contains("RTE") && !seen.contains("grade.json"), "{seen}");
     let page = ada.get(&format!("/c/physics/s/{other}")).expect(200).text();
     assert!(!page.contains("RTE") && page.contains("10 of 10 points"), "{page}");
+    assert!(page.contains("everything on this page is accepted") && !page.contains("Everything is accepted"), "{page}");
     assert_eq!(told(&teacher, other).0["points"], "7");
     // After staff has published the groups, everything is shown.
     ada.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(403);
