@@ -174,7 +174,7 @@ async fn attack(fresh: Fresh) {
         ("another client's", &|claims| claims["aud"] = json!("other"), &by_key, "audience"),
         ("also another client's", &|claims| claims["aud"] = json!(["grades", "other"]), &by_key, "audience"),
         ("too old", &|claims| claims["exp"] = json!(now() - 1), &by_key, "expired"),
-        ("no subject", &|claims| claims["sub"] = json!(""), &by_key, "sub must be"),
+        ("no subject", &|claims| claims["sub"] = json!(""), &by_key, "sub must have"),
         ("somebody else's key", &valid, &|claims| KEYS[2].sign(claims), "ignature"),
         ("a key of nobody", &valid, &|claims| KEYS[1].sign(claims), "key"),
         ("unsigned", &valid, &|claims| unsigned(&json!({"alg": "none"}), claims) + ".", "ignature"),
