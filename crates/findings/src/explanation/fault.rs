@@ -143,11 +143,11 @@ fosssim_num::closed_set! {
         /// Some particles that have nothing in common.
         Any = "",
         /// Only fixed particles.
-        Fixed = " of fixed particles only",
+        Fixed = " of fixed particles",
         /// Only the first particle.
-        First = " of the first particle only",
+        First = " of the first particle",
         /// Only the last particle.
-        Last = " of the last particle only",
+        Last = " of the last particle",
     }
 }
 

@@ -85,19 +85,20 @@ fn describe_fault(fault: &StageFault) -> String {
 /// Describes how states change wrongly.
 fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
-        Quantity::Position => ("positions", "velocities are right, but "),
+        Quantity::Position => ("positions", "velocities are right"),
         Quantity::Velocity if wrong.cause == ChangeCause::Response => {
-            ("velocities", "collisions are detected correctly, but ")
+            ("velocities", "collisions are detected correctly")
         }
-        Quantity::Velocity => ("velocities", "positions are updated correctly from velocities, but "),
+        Quantity::Velocity => ("velocities", "positions are updated correctly from velocities"),
     };
     let axis = match wrong.axis {
         None => "",
-        Some(0) => ", in their horizontal component only,",
-        Some(_) => ", in their vertical component only,",
+        Some(0) => "horizontal ",
+        Some(_) => "vertical ",
     };
     let (whose, how) = (wrong.particles.name(), wrong.ratio.name());
-    format!("{other}{quantity}{whose}{axis} {how}")
+    let start = if axis.is_empty() && whose.is_empty() { "but" } else { "and only the" };
+    format!("{other}, {start} {axis}{quantity}{whose} {how}")
 }
 
 fn describe_responses(wrong: &WrongResponses) -> String {
