@@ -68,11 +68,17 @@ impl Diagnosis {
                 likely += 1;
                 match (likely, common.is_unexplained()) {
                     (_, true) => "Most frequent fault",
-                    (1, _) => "Likely cause of most",
+                    (1, _) if explained == wrong => "Likely cause of",
+                    (1, _) => "Most frequent likely cause",
                     _ => "Another likely cause",
                 }
             };
-            let heading = format!("{name} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
+            let traces = format_count(wrong as u64, "wrong trace");
+            let heading = match (name, wrong) {
+                ("Likely cause of", 1) => format!("{name} the only wrong trace"),
+                ("Likely cause of", _) => format!("{name} all {traces}"),
+                _ => format!("{name} ({explained} of {traces})"),
+            };
             let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, &heading));
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
@@ -130,16 +136,8 @@ fn render_single(case: &Case, style: Style) -> String {
         let _ = writeln!(text, "{note}");
     }
     if *accepted {
-        let _ = writeln!(
-            text,
-            "{}",
-            style.paint(
-                TextStyle::Right,
-                "There is nothing to explain: the fair rules accept the \
-            trace."
-            )
-        );
-        return text;
+        let right = "There is nothing to explain: the fair rules accept the trace.";
+        return text + &style.paint(TextStyle::Right, right) + "\n";
     }
     if let Some(first) = first {
         let _ = writeln!(text, "{}", describe_first_difference(first));
@@ -210,6 +208,27 @@ view! {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_likeliest_cause_has_its_share_of_the_wrong_traces() {
+        let explanation = crate::explain::tests::explanations().swap_remove(0);
+        let heading = |explained: usize, wrong: usize| {
+            let case = |index| Case {
+                scene: format!("scene-{index}"),
+                trace: "FOSSSim".to_owned(),
+                accepted: index >= wrong,
+                note: None,
+                first: None,
+                explanations: if index < explained { vec![explanation.clone()] } else { Vec::new() },
+            };
+            let cases = (0..5).map(case).collect();
+            let text = Diagnosis { cases, common: vec![explanation.clone()], ..Diagnosis::default() };
+            text.render_text(Style::Plain).lines().nth(2).expect("a heading").to_owned()
+        };
+        assert_eq!(heading(1, 1), "Likely cause of the only wrong trace");
+        assert_eq!(heading(4, 4), "Likely cause of all 4 wrong traces");
+        assert_eq!(heading(1, 4), "Most frequent likely cause (1 of 4 wrong traces)");
+    }
 
     #[test]
     fn a_crash_in_many_scenes_is_one_line() {
