@@ -124,10 +124,10 @@ pub enum StartProblem {
     #[error("permission denied; put the program where every user may read and execute it")]
     NotPermitted,
     /// The file is neither an ELF program nor a script.
-    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload the linker's output")]
+    #[error("the file is not a program: neither ELF nor a script that begins with #!; give the linker's output")]
     NotAProgram,
     /// The file is an ELF file, but not a program. It may be an object file or a core dump.
-    #[error("the file is {what}, not a linked program; upload the linker's output")]
+    #[error("the file is {what}, not a linked program; give the linker's output")]
     NotLinked {
         /// The kind of the file, in words.
         what: Cow<'static, str>,
