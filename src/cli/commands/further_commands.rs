@@ -4,7 +4,7 @@ use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
     report::untrusted_text::quote,
-    suite::{Grade, SceneGrade, Submission, config::Hints, library, plan::Plan},
+    suite::{Grade, SceneGrade, Submission, Verdict, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,8 @@ impl FurtherCommands<'_> {
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
         let is_default = is_whole && self.arguments.suite == Assignment::DEFAULT.key();
-        if wrong > 1 && wrong == grade.scenes().count() && is_default {
+        let ran = grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun).count();
+        if ran > 1 && wrong == grade.scenes().count() && is_default {
             let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);
             let others: Vec<&str> = others.map(Assignment::key).collect();
             lines.push(format!("if this program belongs to another milestone: --suite {}", others.join(", ")));
