@@ -113,7 +113,9 @@ fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>
     let mut copy = scene.clone();
     let (kind, value) = list_numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
     let plain = [kind.simplest_value(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
-    let new = plain.into_iter().chain((0..=4).map(|decimals| round(value, decimals)));
+    // Masses, radii and other factors keep their sign: a negative one is no simplification.
+    let is_odd = |new: &f64| kind == NumberKind::Factor && *new < 0.0 && value >= 0.0;
+    let new = plain.into_iter().filter(|new| !is_odd(new)).chain((0..=4).map(|decimals| round(value, decimals)));
     let with = |new: f64| {
         let mut number = 0..;
         map_numbers(scene, |_, value| if number.next() == Some(index) { new } else { value })

@@ -138,3 +138,15 @@ fn a_judgment_that_stops_is_no_broken_trace() {
     let reason = WrongReason::first_reason(&far, &from_trace(trace));
     assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");
 }
+
+#[test]
+fn no_attempt_makes_a_mass_or_a_radius_negative() {
+    let (_, scene) = probe_scenes(Assignment::T2M2).into_iter().next().expect("a probe scene");
+    let attempts = reductions::REDUCTIONS.iter().flat_map(|reduction| {
+        (0..).map_while(|index| reduction(&scene, Assignment::T2M2, index)).flatten().collect::<Vec<_>>()
+    });
+    let is_real = |scene: &Scene| scene.particles.iter().all(|body| body.mass >= 0.0 && body.radius >= 0.0);
+    for attempt in attempts {
+        assert!(is_real(&attempt), "{}", scene::write(&attempt));
+    }
+}
