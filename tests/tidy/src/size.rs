@@ -50,7 +50,8 @@ const HUNDREDS: [(&str, usize); 22] = [
     // links; the list of verdicts in a template and the search for members in SQL went. A worker on the server's
     // machine gets its token by itself, and waiting has a reason; nothing went instead. Reports can have smallest
     // scenes; two searches of `shrink` for the same scene went.
-    ("server", 156),
+    // The page for submitting lists groups of uploaded suites; the flag of suites that hide groups went.
+    ("server", 157),
     ("shrink", 5),
     // The table of `--timings`.
     // The command `shrink`.

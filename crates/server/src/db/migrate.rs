@@ -7,7 +7,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// All changes, the oldest first. The number of a change is its position in this list, from 1.
-const MIGRATIONS: [(&str, &str); 29] = [
+const MIGRATIONS: [(&str, &str); 30] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -37,6 +37,7 @@ const MIGRATIONS: [(&str, &str); 29] = [
     ("equal programs", include_str!("migrations/0027_equal_programs.sql")),
     ("parts of grades", include_str!("migrations/0028_parts_of_grades.sql")),
     ("no passwords", include_str!("migrations/0029_no_passwords.sql")),
+    ("groups of suites", include_str!("migrations/0030_groups_of_suites.sql")),
 ];
 
 /// The version of the tables that this program uses.

@@ -16,7 +16,7 @@ pub use accounts::identity::{Link, NewSecret, NewToken, TokenInfo};
 pub use accounts::limits::{ArchiveTurn, Transfer, TransferLimits};
 pub use assignments::settings::Settings;
 pub(crate) use assignments::settings::{read_moment, time_schema};
-pub use assignments::suites::{Suites, UploadedSuite, is_file_name};
+pub use assignments::suites::{SuiteGroup, Suites, UploadedSuite, is_file_name};
 pub use counts::Counts;
 pub use courses::import::MemberLine;
 pub use courses::members::MemberInfo;

@@ -7,7 +7,7 @@ use crate::{
     task::Suite,
     values,
 };
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 /// The grader's suites, the newest version of each first. A server without a grader, whose workers are elsewhere,
 /// accepts any plain name. The worker's grader then reports whether it has such a suite.
@@ -35,11 +35,30 @@ struct Entry {
 }
 
 /// A group of scenes in a suite.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SuiteGroup {
     pub(crate) name: String,
-    pub(crate) scenes: u64,
+    /// The number of scenes; `None` if an uploaded suite selects them by patterns.
+    pub(crate) scenes: Option<u64>,
     pub(crate) points: serde_json::Number,
+    /// Whether students see the group only after staff publish it.
+    #[serde(default)]
+    pub(crate) is_hidden: bool,
+}
+
+impl SuiteGroup {
+    /// Reads a group of an uploaded suite.
+    pub(crate) fn from_toml(group: &toml::Value) -> Self {
+        let scenes = group.get("scenes").and_then(toml::Value::as_array).map_or(&[][..], Vec::as_slice);
+        let is_pattern = |scene: &toml::Value| scene.as_str().is_none_or(|scene| scene.contains(['*', '?', '[']));
+        let points = group.get("points").cloned().and_then(|points| points.try_into().ok());
+        Self {
+            name: group.get("name").and_then(toml::Value::as_str).unwrap_or_default().to_owned(),
+            scenes: (!scenes.iter().any(is_pattern)).then_some(scenes.len() as u64),
+            points: points.unwrap_or_else(|| 1.into()),
+            is_hidden: group.get("visibility").is_some_and(|visibility| visibility.as_str() != Some("visible")),
+        }
+    }
 }
 
 /// A suite that was uploaded to a course before.

@@ -1,7 +1,7 @@
 //! A member of a course. Students see only their own submissions; staff see all submissions of the course.
 use crate::domain::{
     App,
-    assignments::suites::read_suites,
+    assignments::suites::{SuiteGroup, read_suites},
     view::{self, Account, Assignment, History, LogEntry, Submission},
 };
 use crate::{
@@ -68,6 +68,24 @@ impl Member {
     /// Fails if the assignment does not exist.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
         Ok(self.hide_course_suite(self.read_assignment(slug).await?.1))
+    }
+
+    /// Returns the groups of an assignment's suite; empty if they are not known. Published groups are not hidden.
+    ///
+    /// # Errors
+    ///
+    /// Fails if the assignment does not exist.
+    pub async fn suite_groups(&self, slug: &str) -> Result<Vec<SuiteGroup>, Problem> {
+        let (mut transaction, assignment) = self.read_assignment(slug).await?;
+        let Some(digest) = assignment.settings.suite_archive else {
+            return Ok(self.app.suites.groups(&assignment.settings.suite).to_vec());
+        };
+        let statement = "SELECT parts FROM suite WHERE course = ? AND digest = ?";
+        let row = transaction.row(statement, values![self.course, digest]).await?;
+        let parts = row.map(|row| row.maybe_text("parts")).transpose()?.flatten();
+        let mut groups: Vec<SuiteGroup> = parts.and_then(|parts| serde_json::from_str(&parts).ok()).unwrap_or_default();
+        groups.iter_mut().for_each(|group| group.is_hidden &= assignment.published_at.is_none());
+        Ok(groups)
     }
 
     /// Begins a transaction that reads, and finds the assignment.

@@ -2,7 +2,7 @@
 use crate::domain::{
     Member, Settings,
     accounts::identity,
-    assignments::suites::{UploadedSuite, read_suites},
+    assignments::suites::{SuiteGroup, UploadedSuite, read_suites},
     view::{self, Assignment, Event, EventQuery, Queue, Submission},
 };
 use crate::{
@@ -36,8 +36,8 @@ pub struct NewSuite {
     pub digest: String,
     /// The suite's name.
     pub name: String,
-    /// Whether the suite hides groups.
-    pub hides_groups: bool,
+    /// The suite's groups.
+    pub groups: Vec<SuiteGroup>,
 }
 
 /// Rejects a change if another person has changed the assignment since `revision`. The error names that person and
@@ -104,10 +104,12 @@ impl Staff {
         let visible = change.visible.or(before.as_ref().map(|before| before.visible)).unwrap_or_default();
         let before = before.as_ref().map(|before| before.settings.clone()).unwrap_or_default();
         let settings = settings(&before)?.validate(&self.app.suites)?;
-        if let Some(NewSuite { digest, name, .. }) = change.suite {
-            let statement = "INSERT INTO suite (course, digest, name, uploaded_at) VALUES (?, ?, ?, {now})
-                ON CONFLICT (course, digest) DO UPDATE SET name = excluded.name, uploaded_at = excluded.uploaded_at";
-            transaction.execute(statement, values![self.course, digest, name]).await?;
+        if let Some(NewSuite { digest, name, groups }) = change.suite {
+            let statement = "INSERT INTO suite (course, digest, name, parts, uploaded_at) VALUES (?, ?, ?, ?, {now})
+                ON CONFLICT (course, digest) DO UPDATE SET name = excluded.name, parts = excluded.parts,
+                   uploaded_at = excluded.uploaded_at";
+            let groups = serde_json::to_string(groups).unwrap_or_default();
+            transaction.execute(statement, values![self.course, digest, name, groups]).await?;
         }
         let suite = self.check_suite(&mut transaction, &settings).await?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
@@ -117,7 +119,7 @@ impl Staff {
                published_at = CASE WHEN ? = 0 THEN assignment.published_at END
             RETURNING id, slug, title, visible, settings, published_at, revision";
         // A suite whose groups are unknown may also hide some.
-        let hides_groups = change.suite.is_none_or(|suite| suite.hides_groups);
+        let hides_groups = change.suite.is_none_or(|suite| suite.groups.iter().any(|group| group.is_hidden));
         let withholds_groups = was_published && hides_groups && !before.has_suite_of(&settings);
         let values = values![self.course, slug, title, visible, settings.to_json(), withholds_groups];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;

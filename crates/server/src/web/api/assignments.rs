@@ -5,7 +5,9 @@ use super::super::{
     upload,
 };
 use crate::{
-    domain::{Assignment, AssignmentChange, Member, NewSuite, Settings, Staff, Standing, read_moment, time_schema},
+    domain::{
+        Assignment, AssignmentChange, Member, NewSuite, Settings, Staff, Standing, SuiteGroup, read_moment, time_schema,
+    },
     problem::{Problem, ensure},
     schema::Title,
     worker,
@@ -142,8 +144,6 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let suite: toml::Table =
         text.parse().map_err(|error| Problem::no_suite(format!("suite.toml can't be read: {error}")))?;
     let groups = || suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
-    let hides_groups =
-        groups().filter_map(|group| group.get("visibility")?.as_str()).any(|visibility| visibility != "visible");
     let scenes = groups().filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
     for scene in scenes {
         if scene.starts_with('/') || scene.split('/').any(|part| part == "..") {
@@ -151,7 +151,7 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
         }
     }
     let name = suite.get("name").and_then(toml::Value::as_str).unwrap_or_default().chars().take(200).collect();
-    Ok(NewSuite { name, hides_groups, ..NewSuite::default() })
+    Ok(NewSuite { name, groups: groups().map(SuiteGroup::from_toml).collect(), ..NewSuite::default() })
 }
 
 /// Returns the class's grades as a table (`csv`, one line per student), or all submissions as JSON lines (`jsonl`, one

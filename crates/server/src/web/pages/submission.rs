@@ -6,7 +6,7 @@ use super::{
     render, report, scenes, text,
 };
 use crate::{
-    domain::{Assignment, History, Member, Staff, Submission},
+    domain::{Assignment, History, Member, Staff, Submission, SuiteGroup},
     problem::Problem,
     secret,
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
@@ -21,6 +21,9 @@ struct AssignmentPage {
     member: Member,
     assignment: Assignment,
     work: OwnWork,
+    /// The groups of the suite that are not hidden.
+    groups: Vec<SuiteGroup>,
+    hides_groups: bool,
     key: String,
 }
 
@@ -50,7 +53,10 @@ pub(super) async fn show_assignment(member: Member, UrlPathParts { assignment, .
     let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
     let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Submit");
     let work = OwnWork::read(&member, &assignment).await?;
-    render(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
+    let (hidden, groups): (Vec<_>, _) =
+        member.suite_groups(&assignment.slug).await?.into_iter().partition(|group| group.is_hidden);
+    let hides_groups = !hidden.is_empty();
+    render(&AssignmentPage { frame, member, assignment, work, groups, hides_groups, key: secret::random_hex() })
 }
 
 pub(super) async fn submit(

@@ -9,7 +9,8 @@ on_sqlite!(
     reports_that_tell_of_hidden_groups_are_for_staff,
     the_page_for_staff_is_for_staff,
     a_regrade_by_another_suite_publishes_nothing,
-    all_that_a_page_offers_tells_of_the_points_in_its_head
+    all_that_a_page_offers_tells_of_the_points_in_its_head,
+    the_groups_of_an_uploaded_suite_are_shown_as_far_as_they_are_visible
 );
 
 async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
@@ -180,5 +181,29 @@ async fn all_that_a_page_offers_tells_of_the_points_in_its_head(fresh: Fresh) {
         let page = teacher.get(&format!("/c/physics/s/{id}")).expect(200).text();
         assert_eq!(page.contains("does not see the hidden groups yet"), !published, "{page}");
         assert_eq!(page.contains("The hidden groups are published"), published, "{page}");
+    }
+}
+
+/// Students read the groups of the course's own suite before they submit, but nothing about hidden groups.
+async fn the_groups_of_an_uploaded_suite_are_shown_as_far_as_they_are_visible(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    let suite = b"name = 'Mini'
+[[group]]\nname = 'Open'\nscenes = ['asset:a/b', 'asset:a/c']\npoints = 2.5
+[[group]]\nname = 'Many'\nscenes = ['asset:a/*']
+[[group]]\nname = 'Secret'\nscenes = ['asset:s/d']\npoints = 77\nvisibility = 'after_due_date'\n";
+    let path = "/api/v1/courses/physics/assignments/m1";
+    admin.send("PUT", &format!("{path}/suite"), &[], suite).expect(200);
+    for published in [false, true, false] {
+        let method = if published { "PUT" } else { "DELETE" };
+        admin.send(method, &format!("{path}/published"), &[], b"").expect(200);
+        let page = ada.get("/c/physics/a/m1").expect(200).text();
+        let open = "<li>2.5 for Open <span class=\"names\">2 scenes</span></li>";
+        assert!(page.contains(open) && page.contains("<li>1 for Many</li>"), "{page}");
+        assert_eq!(page.contains("77 for Secret <span class=\"names\">1 scene</span>"), published, "{page}");
+        assert_eq!(page.contains("Other groups stay hidden until staff publish them."), !published, "{page}");
+        assert_eq!(page.contains("Secret"), published, "{page}");
     }
 }
