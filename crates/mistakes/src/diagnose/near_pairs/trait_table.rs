@@ -95,7 +95,7 @@ trait_table! {
     NO_AXIS NO_NUMBER "the particle's center is in front of the half-plane" "(x - p) . n is not negative"
         |pair, _, _| pair.half_plane().is_some_and(|plane| (pair.center() - plane.point).dot(&plane.normal) >= 0.0);
     NO_AXIS NO_NUMBER
-        "the half-plane's normal is so long that the particle seems out of reach, as if it were a unit vector"
+        "the half-plane's normal is long, but is used as a unit vector, so the particle seems out of reach"
         "|(x - p) . n| is greater than r" |pair, _, _| {
             let product = pair.half_plane().map(|plane| (pair.center() - plane.point).dot(&plane.normal));
             product.is_some_and(|product| product.abs() > pair.radius())

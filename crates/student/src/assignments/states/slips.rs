@@ -34,7 +34,7 @@ slips! {
     Length(i8) "has another factor";
     FirstMass "is multiplied by the mass of the first of its two bodies";
     WholeMass "uses the mass as a whole number, as an integer variable does";
-    MassIndex "reads the masses of other particles, because it counts places by particle";
+    MassIndex "reads the masses at the particles' indices, although the array holds every mass twice";
     MassOfFirst "uses the mass of the first particle for all particles";
     XOnly "loses its vertical component";
     YOnly "loses its horizontal component";
