@@ -1,4 +1,4 @@
-// promise: Build processes whose main threads have ended count toward the limit of processes.
+// promise: Build processes whose main threads have ended count toward the process limit.
 // expect: processes or memory
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot wake a process that waits for a word in a library's pages, or read how many wait.
+// promise: A program cannot wake a process that waits on a futex in a library's pages, or find out how many processes wait on it.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

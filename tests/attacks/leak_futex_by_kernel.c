@@ -1,4 +1,4 @@
-// promise: A program cannot wake a process that waits for a word in a library's pages by ending a thread.
+// promise: A program cannot wake a process that waits on a futex in a library's pages by ending a thread.
 // expect: exited 0
 // needs: named violations
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A build step cannot wake a process that waits for a word in a library's pages.
+// promise: A build step cannot wake a process that waits on a futex in a library's pages.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Links count toward the limit of files.
+// promise: Links count toward the file limit.
 // expect: folder
 // policy: tools
 #include "attack.h"
