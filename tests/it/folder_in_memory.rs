@@ -79,7 +79,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
 fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let Some(backend) = with_namespaces() else { return };
     let folder = tempfile::tempdir().unwrap();
-    // Each file is within the limit of file sizes. Together they would be 40 MiB before the supervisor's next check.
+    // Each file is within the file size limit. Together they would be 40 MiB before the supervisor's next check.
     let script = "for i in 1 2 3 4 5 6 7 8 9 10; do head -c 4000000 /dev/zero | tr '\\0' x > f$i; done; sleep 1000";
     let limits = Limits { memory: 256 << 20, ..small() };
     let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));

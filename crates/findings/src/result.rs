@@ -209,7 +209,7 @@ pub struct ProgramProgress {
 pub enum Limit {
     /// The limit of processor time or wall time. How the program ended shows which one it was.
     Time(Duration),
-    /// The limit of memory, in bytes.
+    /// The memory limit, in bytes.
     Memory(u64),
 }
 

@@ -1,5 +1,5 @@
-//! Clips lines and areas to a rectangle before they are drawn, because bodies may be anywhere in the plane and drawing
-//! libraries compute with small numbers.
+//! Clips lines and areas to a rectangle before they are drawn, because bodies may be arbitrarily far away, and drawing
+//! libraries handle only small coordinates.
 use crate::shape::Point;
 
 /// A rectangle from `low` to `high`.

@@ -83,7 +83,7 @@ pub fn processor_time(scope: ProcessorTimeScope) -> std::time::Duration {
     }
 }
 
-/// Makes writes of this process beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk.
+/// Makes writes of this process beyond its file size limit (`ulimit -f`) fail with an error, as on a full disk.
 /// Otherwise such a write would kill the process. The programs that it runs keep the signal, which kills them.
 pub fn let_large_writes_fail() {
     sys::ignore_file_size_signal();

@@ -99,7 +99,7 @@ fn lacks_shadow_memory(stderr: &str) -> bool {
 }
 
 /// Returns whether the output ends with a runtime's message about a request for memory that was denied. If a single
-/// request exceeds the limit of address space, it fails before the memory is used, so no counter shows it.
+/// request exceeds the address space limit, it fails before the memory is used, so no counter shows it.
 fn lacks_memory(stderr: &str) -> bool {
     // These are messages of C++, Rust, Python, Java, Node and the sanitizers.
     const MESSAGES: [&str; 6] = [

@@ -305,7 +305,7 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }))
 }
 
-/// Makes writes beyond the limit of file sizes fail, instead of killing the process.
+/// Makes writes beyond the file size limit fail, instead of killing the process.
 pub(super) fn ignore_file_size_signal() {
     // SAFETY: ignoring a signal needs no function.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };

@@ -117,8 +117,8 @@ impl ShardResult {
     }
 }
 
-/// Returns the entries of a list that belong to a shard. Each shard gets every N-th entry, because neighbors in the
-/// list may have similar slow programs.
+/// Returns the entries of a list that belong to a shard. Each shard gets every N-th entry, because adjacent entries may
+/// be equally slow.
 fn select_own<T>(number: usize, shards: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(shards.max(1))
 }

@@ -214,7 +214,7 @@ pub enum StageDetail {
         /// The number of zones that were compared.
         of: usize,
     },
-    /// The velocities of zones that should stop, divided by their velocities before.
+    /// The velocities of zones that should stop, divided by their velocities before the round.
     #[serde(rename = "Stopped")]
     StoppedVelocities(Ratios),
     /// The motion of the center of mass, divided by the right motion.

@@ -44,7 +44,7 @@ pub enum ExamplePlace {
     },
     /// The numbers are the coefficients of a surplus polynomial. The value is its index in the step's list.
     NumberedPolynomial(usize),
-    /// The number is how many polynomials the step logs.
+    /// The single number is the count of polynomials that the step logs.
     PolynomialCount,
     /// The numbers are the normal and the time of a contact in the trace.
     Contact {
@@ -55,7 +55,7 @@ pub enum ExamplePlace {
         /// The number of the other object, as the trace names it.
         second: i32,
     },
-    /// The number is how many contacts the step logs.
+    /// The single number is the count of contacts that the step logs.
     ContactCount,
     /// The numbers are the position and the velocity of a particle in a record.
     Particle {

@@ -53,16 +53,16 @@ pub enum Event<'a> {
     },
 }
 
-/// The grades of several submissions, and an error outside of the grades, if there was one.
+/// The grades of several submissions, and an error that belongs to no scene, if there was one.
 #[derive(Debug)]
 pub struct BatchResult {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
-    /// An error outside of the grades, if there was one.
+    /// An error of the grader or the machine that belongs to no scene, if there was one.
     pub fault: Option<GradeFault>,
 }
 
-/// An error outside of the results of scenes. The grader or the machine is the cause.
+/// An error that belongs to no scene's result. The grader or the machine caused it.
 #[derive(Debug, thiserror::Error)]
 pub enum GradeFault {
     /// Results could not be stored, for example because the disk is full. The grading was stopped.

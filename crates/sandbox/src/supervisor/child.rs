@@ -126,7 +126,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     Ok(strings)
 }
 
-/// Sets the resource limits. Except for the limit of file sizes, they are only a second protection after the
+/// Sets the resource limits. Except for the file size limit, they are only a second line of defense behind the
 /// supervisor's checks.
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // This is the default of Linux. With it, a deep recursion ends in the same way on every host.

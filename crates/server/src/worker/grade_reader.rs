@@ -28,7 +28,8 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
     let likely = || grade.likely_mistakes.first().map(|mistake| &mistake.text);
-    // No mistake explains a program that crashed or was stopped; the first such scene describes how it ended.
+    // No mistake is reported for a program that crashed or was stopped. The summary of the first scene with the grade's
+    // verdict then describes how the program ended.
     let has_ended = |scene: &&&SceneInFile| scene.code == grade.code && !["AC", "WA"].contains(&scene.code.as_str());
     let ending = || scenes.iter().find(has_ended).map(|scene| &scene.summary).filter(|summary| !summary.is_empty());
     if let Some(reason) = grade.unfit.as_ref().or_else(likely).or_else(ending) {

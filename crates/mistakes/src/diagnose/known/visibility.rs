@@ -27,9 +27,10 @@ pub(in crate::diagnose) enum MistakeEffect {
     NoResult,
 }
 
-/// Returns whether a program with the mistake would be wrong on this scene by more than round-off. Returns `false` if
-/// the search would take too long, or if the course's library does that part of the work. In t2m2 the library responds,
-/// so a program's own impulses show only in `hybrid`.
+/// Returns whether a program with the mistake would be wrong on this scene by more than round-off. Also returns `false`
+/// if the search would take too long, or if the course's library, and not the student's code, computes what the mistake
+/// would change. In t2m2 the library applies the collision response, so mistakes in a student's own impulses are
+/// visible only with `hybrid` handling.
 pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     find_effect(scene, key, &Cell::new(0)) != MistakeEffect::Hidden
 }
