@@ -133,20 +133,19 @@ function showGrade(suite, grade, rows, unusedTraces) {
   const lastGrade = grading.last?.suite === suite.suite ? grading.last : null;
   const changes = lastGrade
     ? [
-        ["became right", [...right].filter((scene) => !lastGrade.right.has(scene))],
-        ["no longer right", [...lastGrade.right].filter((scene) => !right.has(scene))],
+        ["good", "became right", [...right].filter((scene) => !lastGrade.right.has(scene))],
+        ["bad", "stopped being right", [...lastGrade.right].filter((scene) => !right.has(scene))],
       ]
     : [];
   grading.last = { suite: suite.suite, right };
   const changeLines = changes
-    .filter(([, scenes]) => scenes.length)
-    .map(([words, scenes]) =>
-      el(
-        "p",
-        { class: words === "became right" ? "good" : "bad" },
-        `Since the last drop ${words}: ${scenes.join(", ")}`,
-      ),
-    );
+    .filter(([, , scenes]) => scenes.length)
+    .map(([look, words, scenes]) => {
+      const line = `${formatCount(scenes.length, "scene")} ${words} since the last drop`;
+      return scenes.length > 3
+        ? el("details", {}, el("summary", { class: look }, line), el("p", {}, scenes.join(", ")))
+        : el("p", { class: look }, `${line}: ${scenes.join(", ")}`);
+    });
   if (lastGrade && !changeLines.length)
     changeLines.push(el("p", { class: "hint" }, "Since the last drop nothing changed."));
   const names =
@@ -180,9 +179,18 @@ function showGrade(suite, grade, rows, unusedTraces) {
           ` (${formatCount(own.length, "scene")})${worth ? ` Fixing it is ${worth}.` : ""}`,
         ),
       ),
-      el("ul", {}, ...own.map((row) => el("li", {}, sceneLink(row, row.scene)))),
+      el("p", {}, own.length > 1 ? "Clearest scene: " : "", sceneLink(own[0], own[0].scene)),
+      own.length > 1
+        ? el(
+            "details",
+            {},
+            el("summary", {}, `and ${own.length - 1} more`),
+            el("ul", {}, ...own.slice(1).map((row) => el("li", {}, sceneLink(row, row.scene)))),
+          )
+        : "",
     ),
   );
+  const explained = new Set(causes.flatMap(([, own]) => own));
   const groups = suite.groups.map(({ name, scenes }, number) => {
     const own = rows.filter((row) => row.group === name),
       rightCount = own.filter((row) => row.accepted).length;
@@ -196,8 +204,8 @@ function showGrade(suite, grade, rows, unusedTraces) {
         el("td", { class: "num", "data-label": "points" }, `${points} of ${of}`),
         el("td", { class: "words" }, accepted || isMissing ? "" : why),
       );
-    // Wrong scenes come first. Right scenes are shown on request.
-    const wrong = own.filter((row) => !row.accepted && !row.isMissing),
+    // Wrong scenes that are in no card come first. The others are shown on request.
+    const wrong = own.filter((row) => !row.accepted && !row.isMissing && !explained.has(row)),
       missing = own.filter((row) => row.isMissing);
     const renderFolded = (list, words) =>
       list.length
@@ -244,6 +252,10 @@ function showGrade(suite, grade, rows, unusedTraces) {
         ),
       ),
       wrong.length ? renderTable(wrong) : "",
+      renderFolded(
+        own.filter((row) => explained.has(row)),
+        "with a mistake above",
+      ),
       renderFolded(missing, "without a trace"),
       renderFolded(
         own.filter((row) => row.accepted),
@@ -252,11 +264,7 @@ function showGrade(suite, grade, rows, unusedTraces) {
     );
   });
   $("marks-list").replaceChildren(
-    el(
-      "h2",
-      {},
-      `${suite.suite}: ${grade.points} of ${grade.of} points, ${right.size} of ${formatCount(rows.length, "scene")} right`,
-    ),
+    el("h2", {}, `${right.size} of ${formatCount(rows.length, "scene")} right`),
     ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []),
     ...unusedLines,
     ...changeLines,
