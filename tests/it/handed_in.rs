@@ -104,6 +104,8 @@ fn traces_that_are_there_already_are_graded_without_running_anything() {
     let right = grade("right", &[]);
     assert_eq!(right.code, Some(0), "{}", right.shown());
     assert!(right.out().contains("right: accepted, 20 of 20 points"), "{}", right.out());
+    let page = grade("right", &["--format", "html=right.html"]).err();
+    assert!(page.contains("right: accepted, 20 of 20 points\nopen in a browser: right.html\n"), "{page}");
     std::fs::create_dir(workspace.path("none")).expect("a folder");
     let none = grade("none", &[]).out();
     assert!(none.contains("Group/name.bin is missing or empty") && !none.contains("the program"), "{none}");

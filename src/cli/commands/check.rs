@@ -68,6 +68,10 @@ fn write_report(
     evidence: &dyn Fn() -> Evidence,
 ) -> Result<()> {
     let style = if target.is_some() { Style::Plain } else { console::style() };
+    if let (Some(Output::File(_)), CheckFormat::Html) = (&target, format) {
+        let text = check.render_text(Style::Plain);
+        console::print_remark(text.lines().take(1).map(|verdict| format!("{verdict}\n")).collect::<String>());
+    }
     let text = match format {
         CheckFormat::Text => check.render_text(style),
         CheckFormat::Json => check.json(),

@@ -3,7 +3,13 @@ use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{FilePlace, open_for_writing},
-    report::{formats::Format, grade, line_width, page::Audience, style::Style},
+    report::{
+        formats::Format,
+        grade::{self, Text, TextDetail},
+        line_width,
+        page::Audience,
+        style::Style,
+    },
     suite::{Grade, SkippedEntry, catch_panic, suggestions},
 };
 use anyhow::{Context, Result, bail};
@@ -179,9 +185,13 @@ impl Results<'_> {
                     keep(catch_render_panic("the report", render).and_then(|text| console::print(text.as_bytes())))
                 }
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
-                (Some(file), _) => {
-                    keep(write(file, render).map(|()| output::print_path(file, report.format == Format::Html)))
-                }
+                (Some(file), format) => keep(write(file, render).map(|()| {
+                    if format == Format::Html && reports.iter().all(|report| report.file.is_some()) {
+                        let verdict = Text { detail: TextDetail::Line, ..Text::default() };
+                        console::print_remark(verdict.render(grades));
+                    }
+                    output::print_path(file, format == Format::Html);
+                })),
             }
         }
         match wrong {
