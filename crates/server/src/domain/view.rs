@@ -242,8 +242,8 @@ impl Event {
         let end = |event: &Self| event.text.split_once(' ').map(|(_, end)| end.to_owned());
         let subject = |event: &Self| (event.actor.clone(), event.course.clone(), event.kind.clone(), end(event));
         let distance = self.happened_at.abs_diff(other.happened_at);
-        let is_preview = |event: &Self| event.kind == "previewed";
-        match is_preview(self) && is_preview(other) {
+        let is_of_regrade = self.kind == other.kind && ["previewed", "grade changed"].contains(&self.kind.as_str());
+        match is_of_regrade {
             true => distance < 60_000 && (&self.course, &self.assignment) == (&other.course, &other.assignment),
             false => distance < 1000 && self.actor.is_some() && subject(self) == subject(other),
         }

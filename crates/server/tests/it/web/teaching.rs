@@ -6,6 +6,7 @@ use crate::support::{
 use std::time::{Duration, SystemTime};
 
 on_both_engines!(
+    a_regrade_fills_no_log,
     a_class_comes_in_by_a_table,
     staff_overrules_answers_and_gives_time,
     late_work_is_taken_and_costs_points,
@@ -325,4 +326,25 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     // A browser gets a page for a missing address.
     let missing = ada.send("GET", "/nope", &[("accept", "text/html")], b"").expect(404).text();
     assert!(missing.contains("<html"), "{missing}");
+}
+
+/// The results of a regrade, and the changed grades after it, each take one line of the log.
+async fn a_regrade_fills_no_log(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "1"]);
+    let admin = server.admin();
+    server.course(&admin, "physics");
+    let ada = server.member(&admin, "physics", "ada", "student");
+    for points in 1..=4 {
+        let id = ada.submit("physics", &program("WA", points));
+        ada.wait_for_grade("physics", id);
+    }
+    let base = "/api/v1/courses/physics/assignments/m1/regrades";
+    let wish = r#"{"reason": "other rules", "settings": {"rules": "parity"}}"#;
+    let path = format!("{base}/{}", admin.post_json(base, wish).expect(201).json()["id"]);
+    while admin.get(&path).expect(200).json()["left"] != 0 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    admin.post_json(&format!("{path}/apply"), "").expect(200);
+    let page = admin.get("/c/physics/audit").expect(200).text();
+    assert_eq!(page.matches("<summary>4 similar events").count(), 2, "{page}");
 }
