@@ -9,6 +9,7 @@ use crate::{
     domain::{Assignment, History, Member, Staff, Submission, SuiteGroup},
     problem::Problem,
     secret,
+    visible_grade::{VisibleGrade, verdict},
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
 };
 use askama::Template;
@@ -46,6 +47,8 @@ struct SubmissionPage {
     page: Option<&'static str>,
     /// The report as HTML, if the page can contain it.
     report: Option<String>,
+    /// The verdict without hidden groups, and the time at which these were published. Only for staff.
+    hidden: Option<(String, Option<i64>)>,
 }
 
 pub(super) async fn show_assignment(member: Member, UrlPathParts { assignment, .. }: UrlPathParts) -> Page {
@@ -92,6 +95,9 @@ pub(super) async fn show_submission(member: Member, UrlPathParts { id, .. }: Url
         Some(name) => report::read_report(&member, &member.report(id, name).await?).await?,
         None => None,
     };
+    let shown = submission.grade.as_ref().and_then(|grade| VisibleGrade::from_text(grade.shown.as_deref()?));
+    let hidden = shown.filter(|_| member.is_staff).zip(assignment.as_ref());
+    let hidden = hidden.map(|(shown, assignment)| (verdict(&shown.code).to_owned(), assignment.published_at));
     let is_own = submission.login == member.account.login;
     // Staff may have hidden the assignment after the student submitted.
     let work = match &assignment {
@@ -114,6 +120,7 @@ pub(super) async fn show_submission(member: Member, UrlPathParts { id, .. }: Url
         change: changes.get(&id).map(scenes::describe_change),
         page,
         report,
+        hidden,
         submission,
         member,
     })
