@@ -62,8 +62,9 @@ impl App {
         let browser = known.filter(is_secret).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
-        let (expires_at, shown, to) = (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
-        let content = format!("{service}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
+        let (expires_at, browser_digest, to) =
+            (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
+        let content = format!("{service}.{expires_at}.{browser_digest}.{account}.{to}.{}", random_hex());
         let state = format!("{content}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, content.as_bytes())));
         Ok(StartedSignIn { state, browser })
     }

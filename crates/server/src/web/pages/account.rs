@@ -21,7 +21,7 @@ const MAX_COURSES: usize = 5;
 
 #[derive(Template)]
 #[template(path = "home.html")]
-struct Home {
+struct HomePage {
     frame: PageFrame,
     name: String,
     courses: Vec<HomeCourse>,
@@ -67,7 +67,7 @@ pub(super) async fn show_home(person: Person) -> Page {
         courses.push(HomeCourse { member, is_guest, assignments, unlisted: rest.len() });
     }
     let checks_traces = person.app.checker.is_some();
-    render(&Home { frame, name: person.account.name, courses, others, checks_traces })
+    render(&HomePage { frame, name: person.account.name, courses, others, checks_traces })
 }
 
 async fn render_account(person: &Person, new_token: Option<String>) -> Page {

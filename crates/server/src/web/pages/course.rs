@@ -142,7 +142,9 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
-    seen: Option<i64>,
+    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 /// Returns the assignments of a course as rows of its table.
@@ -221,13 +223,13 @@ async fn render_members(staff: &Staff, filter: People, update: Option<(String, O
     render(&MembersPage { frame, slug, members, students, staff_count, filter, after, platforms, seen_event, update })
 }
 
-pub(super) async fn show_members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
-    render_members(&staff, look, None).await
+pub(super) async fn show_members(staff: Staff, QueryInput(query): QueryInput<People>) -> Page {
+    render_members(&staff, query, None).await
 }
 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
-    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen).await?.link;
+    let link = staff.set_member(login, form.name.trim(), &form.role, form.seen_event).await?.link;
     render_members(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 

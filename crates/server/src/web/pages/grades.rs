@@ -133,12 +133,12 @@ pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 pub(super) async fn show_class(
     staff: Staff,
     UrlPathParts { course: slug, assignment, .. }: UrlPathParts,
-    QueryInput(look): QueryInput<GradesQuery>,
+    QueryInput(query): QueryInput<GradesQuery>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
     let statistics = Statistics::from_standings(&standings);
-    let (standings, found, [before, after]) = look.select_page(&standings);
+    let (standings, found, [before, after]) = query.select_page(&standings);
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|standing| Some(standing.counts.as_ref()?.grade.as_ref()?.result)).collect();
@@ -146,7 +146,7 @@ pub(super) async fn show_class(
     render(&GradesPage {
         frame: class_frame(&staff, &assignment),
         slug,
-        filter: look,
+        filter: query,
         match_count: found,
         previous_page: before,
         next_page: after,

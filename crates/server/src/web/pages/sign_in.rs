@@ -20,7 +20,7 @@ use url::form_urlencoded::byte_serialize;
 
 #[derive(Template)]
 #[template(path = "sign_in.html")]
-struct SignIn {
+struct SignInPage {
     frame: PageFrame,
     /// The provider's name, and the URL at which a sign-in at the provider begins.
     provider: Option<(String, String)>,
@@ -108,7 +108,7 @@ pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page 
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let provider = visitor.app.provider.as_ref();
     let provider = provider.map(|provider| (provider.label.clone(), format!("/sign-in/provider?to={query}")));
-    render(&SignIn { frame: PageFrame::default(), provider, fault, to })
+    render(&SignInPage { frame: PageFrame::default(), provider, fault, to })
 }
 
 pub(super) async fn show_page(visitor: Visitor, QueryInput(NextPage { path: to }): QueryInput<NextPage>) -> Page {

@@ -76,7 +76,9 @@ pub(super) struct NewExtension {
     due: String,
     #[serde(default)]
     due_zone: String,
-    seen: Option<i64>,
+    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 #[derive(Deserialize)]
@@ -93,7 +95,9 @@ pub(super) struct NewMark {
 pub(super) struct ImportedTable {
     table: String,
     import: Option<String>,
-    seen: Option<i64>,
+    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    #[serde(rename = "seen")]
+    seen_event: Option<i64>,
 }
 
 pub(super) async fn show(staff: Staff, UrlPathParts { course: slug, assignment, login, .. }: UrlPathParts) -> Page {
@@ -176,13 +180,13 @@ async fn render_preview(staff: &Staff, table: String, seen_event: Option<i64>, i
 }
 
 pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
-    render_preview(&staff, form.table, form.seen, form.import.is_some()).await
+    render_preview(&staff, form.table, form.seen_event, form.import.is_some()).await
 }
 
 actions! {
     extend(staff: Staff, { course, assignment, login }, form: NewExtension): {
         let before = staff.student_history(&assignment, &login).await?.extended_to;
-        staff.extend(&assignment, &login, read_due_date(&form.due, &form.due_zone, before)?, form.seen)
+        staff.extend(&assignment, &login, read_due_date(&form.due, &form.due_zone, before)?, form.seen_event)
     } => "/c/{course}/a/{assignment}/students/{login}";
     mark(staff: Staff, { course, id }, form: NewMark):
         async {
