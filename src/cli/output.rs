@@ -164,13 +164,17 @@ pub(super) fn print_path(file: &Path, is_page: bool) {
 }
 
 impl Output {
-    /// Calls `act` with the writer. If the reader has closed the pipe, returns `taken` instead of an error, so that the
-    /// command can finish.
-    fn write_until_closed<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+    /// Calls `act` with the writer. If the reader has closed the pipe, returns `value_if_closed` instead of an error,
+    /// so that the command can finish.
+    fn write_until_closed<T>(
+        &mut self,
+        value_if_closed: T,
+        act: impl FnOnce(&mut dyn Write) -> io::Result<T>,
+    ) -> io::Result<T> {
         match self {
-            Self::Discarded => Ok(taken),
+            Self::Discarded => Ok(value_if_closed),
             Self::Stdout => match act(&mut io::stdout()) {
-                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(taken),
+                Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(value_if_closed),
                 other => other,
             },
             Self::Device(device, _) => act(device),

@@ -92,6 +92,6 @@ pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String
     };
     match scene::read(name, xml) {
         Ok(loaded) => Ok(loaded.scene),
-        Err(refused) => Err(scene_problems::render_errors(name, xml, &refused)),
+        Err(errors) => Err(scene_problems::render_errors(name, xml, &errors)),
     }
 }

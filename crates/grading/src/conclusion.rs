@@ -135,7 +135,7 @@ pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Ex
     };
     let difference_cause = fair::find_cause(judged);
     let has_fault = rules == Rules::Fair || difference_cause.is_none();
-    let look = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
+    let depth = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     let mut result = SceneResult {
         scene: run.task.name.clone(),
@@ -144,7 +144,7 @@ pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Ex
         ended: Some(program.ended.clone()),
         difference_cause,
         disclosure: Some(Disclosure::from_outcome(judged, rules)),
-        explanations: if is_explained { explain(look) } else { Vec::new() },
+        explanations: if is_explained { explain(depth) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
         steps: judged.steps,
         measured: program.measured,

@@ -30,7 +30,7 @@ impl Plan {
     /// groups are removed, and the plan's name says that it is only a part.
     #[must_use]
     pub fn filter_scenes(mut self, takes: impl Fn(&str) -> bool) -> Self {
-        let all = self.scenes().count();
+        let scene_count = self.scenes().count();
         for group in &mut self.groups {
             let before = group.scenes.len();
             group.scenes.retain(|task| takes(&task.name));
@@ -43,8 +43,8 @@ impl Plan {
         }
         self.groups.retain(|group| !group.scenes.is_empty());
         let kept_count = self.scenes().count();
-        if kept_count < all {
-            self.name = format!("{} ({kept_count} of {all} scenes)", self.name);
+        if kept_count < scene_count {
+            self.name = format!("{} ({kept_count} of {scene_count} scenes)", self.name);
         }
         self
     }
@@ -212,13 +212,13 @@ mod tests {
         let plan = || load_suite(find_built_in_suite("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
         let (whole_suite, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
         let part = plan().filter_scenes(|scene| scene == name);
-        let all = whole_suite.scenes().count();
+        let scene_count = whole_suite.scenes().count();
         assert_eq!((part.groups.len(), part.scenes().count()), (1, 1));
         let group = whole_suite.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
         #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
         let worth = group.marking.points / group.scenes.len() as f64;
         assert!((part.max_points() - worth).abs() < 1e-12);
-        assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole_suite.name));
+        assert_eq!(part.name, format!("{} (1 of {scene_count} scenes)", whole_suite.name));
         assert_eq!(plan().filter_scenes(|_| true).name, whole_suite.name);
     }
 

@@ -293,8 +293,8 @@ impl Runner<'_> {
 /// the panic.
 fn explain_run(run: &JudgedRun<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, CaughtPanic)> {
     let mut explaining = catch_panic(|| failed_scene::inject_panic(Activity::Explaining, program)).err();
-    let explain = |look: SearchDepth| {
-        catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
+    let explain = |depth: SearchDepth| {
+        catch_panic(|| depth.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
         })

@@ -41,7 +41,7 @@ pub fn judge_trace<'a, R: Read + Send>(
         hints: plan.staff_hints,
         limits: &plan.limits,
     };
-    let explained = conclude(&run, |look| look.explain(&task.scene, &examined.trace));
+    let explained = conclude(&run, |depth| depth.explain(&task.scene, &examined.trace));
     (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
 }
 

@@ -112,13 +112,13 @@ impl KeeperPool {
     pub(super) fn take_keeper(&self, kind: &RunKind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let same_kind = idle.iter().rposition(|keeper| keeper.kind == *kind);
-        let taken = match same_kind {
+        let keeper = match same_kind {
             Some(index) => Some(idle.swap_remove(index)),
             None => idle.pop(),
         };
         drop(idle);
         // The keeper is dropped here, after the lock is released, so that no thread waits for its end.
-        taken.filter(|_| same_kind.is_some())
+        keeper.filter(|_| same_kind.is_some())
     }
 
     fn return_keeper(&self, keeper: Keeper) {

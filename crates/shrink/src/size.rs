@@ -107,7 +107,7 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
         magnitude += value.abs() + if *value < 0.0 { 0.01 } else { 0.0 };
     }
     let efforts = [ExplicitEuler, SymplecticEuler, ForwardBackwardEuler, LinearizedImplicitEuler, ImplicitEuler];
-    let effort = efforts.iter().position(|integrator| *integrator == scene.integrator).unwrap_or_default();
+    let effort_index = efforts.iter().position(|integrator| *integrator == scene.integrator).unwrap_or_default();
     let handling = match scene.collision {
         Collision::None => 0,
         Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
@@ -118,7 +118,7 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
     let hits = events.hits.values().sum::<u64>() as usize;
     let extra_digits: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
-    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
+    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort_index + handling + fixed);
     let (unclear, oddities) = (usize::from(!is_clear(scene)), count_oddities(scene, assignment));
     ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + extra_digits], magnitude)
 }

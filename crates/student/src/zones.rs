@@ -13,7 +13,7 @@ const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// Returns the zone of one contact.
 pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
-    let (student, all) = (world.student, world.scene.particles.len());
+    let (student, particle_count) = (world.student, world.scene.particles.len());
     let one = contact.pair.particle;
     let mut particles = BTreeSet::from([one]);
     let mut half_plane = false;
@@ -24,8 +24,10 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
             match student.mistake_in(MODULE_AREAS) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
-                Some(Mistake::ZonesNextParticle) => particles.extend([edge.first, (edge.first + 1).min(all - 1)]),
-                Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(all - 1)]),
+                Some(Mistake::ZonesNextParticle) => {
+                    particles.extend([edge.first, (edge.first + 1).min(particle_count - 1)])
+                }
+                Some(Mistake::ZonesEdgeIndex) => particles.extend([index.min(particle_count - 1)]),
                 Some(Mistake::ZonesEdgeWithoutParticle) => particles = BTreeSet::from([edge.first, edge.second]),
                 _ => particles.extend([edge.first, edge.second]),
             }
@@ -33,7 +35,7 @@ pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
         }
         Object::HalfPlane(index) => {
             half_plane = !student.makes(Mistake::ZonesNoHalfPlaneFlag);
-            particles.extend(student.makes(Mistake::ZonesHalfPlaneIndex).then_some(index.min(all - 1)));
+            particles.extend(student.makes(Mistake::ZonesHalfPlaneIndex).then_some(index.min(particle_count - 1)));
         }
     }
     half_plane ^= student.makes(Mistake::ZonesFlagInverted) && !matches!(contact.pair.object, Object::Edge(_));

@@ -106,9 +106,9 @@ impl Counter {
     ///
     /// Fails if the file can't be written.
     pub(super) fn new(file: &Path, submissions: usize, counts: Vec<bool>) -> io::Result<Self> {
-        let all = submissions * counts.iter().filter(|counts| **counts).count();
+        let total = submissions * counts.iter().filter(|counts| **counts).count();
         let place = FilePlace::new(file.parent().unwrap_or(Path::new("")), file.file_name().unwrap_or_default());
-        let counter = Self { place, is_counted: counts, done: 0, total: all };
+        let counter = Self { place, is_counted: counts, done: 0, total };
         counter.write()?;
         Ok(counter)
     }

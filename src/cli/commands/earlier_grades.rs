@@ -28,8 +28,8 @@ struct GradesFile {
 /// Fails if the file can't be read, or contains no grade.
 pub(super) fn read(path: &Path) -> Result<Vec<EarlierGrade>> {
     let file = if path.is_dir() { FilePlace::new(path, FILE_NAME) } else { FilePlace::new("", path) };
-    let shown = input::printable_name(&file.path()).to_string();
-    let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
+    let name = input::printable_name(&file.path()).to_string();
+    let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {name}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
         // A line without groups is about an entry that is not a submission.
@@ -37,7 +37,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<EarlierGrade>> {
     };
     if grades.is_empty() {
         bail!(
-            "{shown} contains no grades: give --compare an output folder, its {FILE_NAME}, or the output of --format \
+            "{name} contains no grades: give --compare an output folder, its {FILE_NAME}, or the output of --format \
              json"
         );
     }

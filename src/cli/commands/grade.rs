@@ -193,12 +193,14 @@ impl GradingSession<'_> {
 
     /// Prints how many results were reused, and how a grading that was stopped can be continued.
     fn report_kept_results(&self, grades: &[Grade]) {
-        let taken: usize = grades.iter().map(Grade::count_reused).sum();
+        let reused_count: usize = grades.iter().map(Grade::count_reused).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
-            if taken > 0 {
+            if reused_count > 0 {
                 let (folder, all) = (folder.display(), format_count(all as u64, "result"));
-                console::print_error(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
+                console::print_error(format!(
+                    "reused {reused_count} of {all} from {folder} (--fresh regrades everything)\n"
+                ));
             }
             if self.cancellation.is_canceled() {
                 let folder = folder.display();
@@ -321,11 +323,11 @@ impl GradingSession<'_> {
 
     /// Renders the report for a terminal. For a class, it is a table and the result of the class.
     fn render_text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
-        let shown = text_detail(self.arguments, grades.len() > 1);
+        let detail = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace_place(submission, scene).map(|place| place.path());
         let closer = FurtherCommands { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: Option<&_>| closer.list_commands(grade, scene);
-        render_text(grades, self.skipped_entries(), shown, MAX_HARDEST, Some(&closer))
+        render_text(grades, self.skipped_entries(), detail, MAX_HARDEST, Some(&closer))
     }
 
     /// Grades again whenever a program changes, until the user interrupts it.

@@ -78,8 +78,8 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
         grades: &grades,
         skipped: &skipped,
     };
-    let shown = if arguments.quiet { TextDetail::Line } else { TextDetail::Table };
-    results.write(&reports, |grades| render_text(grades, &skipped, shown, usize::MAX, None))?;
+    let detail = if arguments.quiet { TextDetail::Line } else { TextDetail::Table };
+    results.write(&reports, |grades| render_text(grades, &skipped, detail, usize::MAX, None))?;
     Ok(exit_code(&grades))
 }
 

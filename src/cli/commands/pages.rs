@@ -109,8 +109,8 @@ impl Pages {
             write(&name, &self.render_grade(grade, Some("../index.html"), Audience::Staff)).map(drop)
         })?;
         // File names are already safe in a URL, except for blanks.
-        let page = |grade: &Grade| format!("reports/{}.html", to_file_name(&grade.submission).replace(' ', "%20"));
-        write("index.html", &ClassPage { grades, skipped_entries: skipped, page: &page }.html())
+        let page_url = |grade: &Grade| format!("reports/{}.html", to_file_name(&grade.submission).replace(' ', "%20"));
+        write("index.html", &ClassPage { grades, skipped_entries: skipped, page_url: &page_url }.html())
     }
 }
 

@@ -49,12 +49,12 @@ fn list_bundled() -> Vec<RecordedScene> {
 
 /// Returns the scenes of a folder, in alphabetical order.
 fn find_scenes(folder: &Path) -> Result<Vec<RecordedScene>> {
-    let shown = folder.display();
+    let path = folder.display();
     let files = scene_files::list_files(folder, ".xml").with_context(|| {
-        format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
+        format!("cannot read the scenes in {path}; run this command in the checkout, or choose a folder with --assets")
     })?;
     if files.is_empty() {
-        bail!("there is no scene in {shown}; scenes are called {shown}/<Group>/<name>.xml");
+        bail!("there is no scene in {path}; scenes are called {path}/<Group>/<name>.xml");
     }
     for pair in files.windows(2) {
         if pair[0].name == pair[1].name {

@@ -180,9 +180,9 @@ impl Sharding {
         let (common, number, skipped_entries) = (self.common.clone(), self.shard.number, skipped_entries.to_vec());
         let part = ShardResult { common, number, grades: grades.to_vec(), skipped_entries };
         output::write_below(&FilePlace::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
-        let (own, all) = (grades.len(), self.common.submissions.len());
+        let (own, submission_count) = (grades.len(), self.common.submissions.len());
         console::print_remark(format!(
-            "shard {} of {}: {own} of {all} submissions\n",
+            "shard {} of {}: {own} of {submission_count} submissions\n",
             self.shard.number, self.shard.total
         ));
         Ok(())

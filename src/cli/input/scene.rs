@@ -49,7 +49,7 @@ pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
             }
             Ok(SceneInput { name: shown, scene, identity })
         }
-        Err(refused) => bail!("{}", scene_problems::render_errors(&shown, &bytes, &refused)),
+        Err(errors) => bail!("{}", scene_problems::render_errors(&shown, &bytes, &errors)),
     }
 }
 

@@ -86,18 +86,18 @@ pub fn grade_all(
     let shared = SharedGrading::new(grader, results, cancellation);
     let gradings: Vec<SubmissionGrading<'_>> =
         submissions.iter().map(|submission| SubmissionGrading::new(grader, &shared, submission)).collect();
-    let mut telling = None;
-    let mut tell = |event: Event<'_>| {
+    let mut first_panic = None;
+    let mut report = |event: Event<'_>| {
         if let Err(panic) = catch_panic(|| on_event(event)) {
-            telling.get_or_insert(panic);
+            first_panic.get_or_insert(panic);
         }
     };
-    let mut grades = distribute(grader, &gradings, &mut tell);
+    let mut grades = distribute(grader, &gradings, &mut report);
     Grade::record_same_programs(&mut grades);
     drop(gradings);
     // The sweep is repeated, because processes of killed graders may have ended after the first sweep.
     temporary_folders::remove_abandoned();
-    let fault = shared.storage_error.into_inner().map(GradeFault::Storing).or(telling.map(GradeFault::Reporting));
+    let fault = shared.storage_error.into_inner().map(GradeFault::Storing).or(first_panic.map(GradeFault::Reporting));
     BatchResult { grades, fault }
 }
 

@@ -190,10 +190,10 @@ pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> No
             polynomials.iter().enumerate().all(|(index, polynomial)| positive(polynomial, time) != (index == left_out))
         })
     };
-    let approach = polynomials.len().saturating_sub(1);
+    let approach_index = polynomials.len().saturating_sub(1);
     let is_edge = kind == PairKind::ParticleEdge;
     match () {
-        () if holds_but(approach, 0..=SAMPLES_PER_STEP) => NoContactReason::Parting,
+        () if holds_but(approach_index, 0..=SAMPLES_PER_STEP) => NoContactReason::Parting,
         () if is_edge && holds_but(1, 0..=SAMPLES_PER_STEP) => NoContactReason::BesideFirst,
         () if is_edge && holds_but(2, 0..=SAMPLES_PER_STEP) => NoContactReason::BesideSecond,
         () if holds_but(polynomials.len(), SAMPLES_PER_STEP + 1..=2 * SAMPLES_PER_STEP) => NoContactReason::Late,

@@ -78,9 +78,9 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         let is_reported = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_reported) {
             // The hint for a remedy stays last, and a mistake that is already reported is not repeated.
-            let remedy = explanation.details.len().saturating_sub(1);
+            let remedy_index = explanation.details.len().saturating_sub(1);
             if !explanation.key.ends_with(&own.key) {
-                explanation.details.splice(remedy..remedy, own.details);
+                explanation.details.splice(remedy_index..remedy_index, own.details);
             }
             explanation.example = own.example.or(explanation.example.take());
         }

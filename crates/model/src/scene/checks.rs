@@ -227,11 +227,11 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
         ax.total_cmp(&bx).then(ay.total_cmp(&by)).then(m.cmp(n))
     });
     for group in particles.chunk_by(|(_, _, a), (_, _, b)| a.position == b.position) {
-        let movable = group.iter().position(|(_, _, particle)| !particle.fixed);
-        let Some(movable) = movable.filter(|_| group.len() > 1) else { continue };
+        let movable_index = group.iter().position(|(_, _, particle)| !particle.fixed);
+        let Some(movable_index) = movable_index.filter(|_| group.len() > 1) else { continue };
         // Each other pair is reported once; two fixed particles at the same position are harmless.
         for (index, (number, tag, particle)) in group.iter().enumerate() {
-            let partner = if particle.fixed { movable } else { 0 };
+            let partner = if particle.fixed { movable_index } else { 0 };
             let (other, _, with) = group[partner];
             if index > partner && rule.touches(particle.radius + with.radius) {
                 rule.report(tag, report, || format!("particles {other} and {number} start at the same position"));

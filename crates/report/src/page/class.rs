@@ -40,7 +40,7 @@ pub struct ClassPage<'a> {
     /// The skipped entries of the class's folder, which are not submissions.
     pub skipped_entries: &'a [SkippedEntry],
     /// A function that returns the URL of a submission's page, relative to the class's page.
-    pub page: &'a dyn Fn(&Grade) -> String,
+    pub page_url: &'a dyn Fn(&Grade) -> String,
 }
 
 impl ClassPage<'_> {
@@ -85,7 +85,7 @@ struct Cluster<'a> {
 impl ClassContent<'_> {
     /// Returns the URL of a scene on a submission's page.
     fn scene_url(&self, grade: &Grade, scene: &str) -> String {
-        format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
+        format!("{}#scene-{}", (self.class.page_url)(grade), scene_key(scene))
     }
 
     /// Returns the names of submissions as text, to be copied into a letter.
@@ -338,7 +338,8 @@ mod tests {
     }
 
     fn page(grades: &[Grade]) -> String {
-        ClassPage { grades, skipped_entries: &[], page: &|grade| format!("reports/{}.html", grade.submission) }.html()
+        ClassPage { grades, skipped_entries: &[], page_url: &|grade| format!("reports/{}.html", grade.submission) }
+            .html()
     }
 
     #[test]

@@ -170,8 +170,8 @@ fn hide(path: &Path) -> io::Result<()> {
 
 /// Makes the processes of the run visible.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
-    let shown = if order.allows_tools { c"" } else { c"subset=pid" };
-    mounts::mount(c"proc", c"/proc", shown, false).map_err(failure_at("mount /proc"))
+    let options = if order.allows_tools { c"" } else { c"subset=pid" };
+    mounts::mount(c"proc", c"/proc", options, false).map_err(failure_at("mount /proc"))
 }
 
 /// Hides `/proc` from this process, except for the process's own entry. The entry is in an ordinary folder, because the

@@ -65,7 +65,7 @@ const FORMULA_AREAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Ar
 /// Returns the motion of a pair, as this student's program reads it from its lists.
 fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> PairMotion {
     let frame = pair_axes(world.student, pair);
-    let (student, all) = (world.student, world.scene.particles.len());
+    let (student, particle_count) = (world.student, world.scene.particles.len());
     let (kind, number) = pair.object.numbers();
     let slip = IndexSlip::for_student(student, kind);
     let body = |index: usize| {
@@ -78,8 +78,8 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
     };
     let radius_of = |role: usize, index: usize| {
         let index = match slip.radius {
-            Some(RadiusSlip::Next) => (index + 1) % all,
-            Some(RadiusSlip::OfObject) if role == 0 => number % all,
+            Some(RadiusSlip::Next) => (index + 1) % particle_count,
+            Some(RadiusSlip::OfObject) if role == 0 => number % particle_count,
             _ => index,
         };
         world.scene.particles[index].radius

@@ -10,13 +10,13 @@ impl<'a> Follower<'a> {
     /// Counts the logged passes before and after the mid record.
     pub(super) fn count_passes(&mut self) {
         let (Some(mid), per_pass) = (self.records.mid, self.context.polynomials_per_pass) else { return };
-        let (before, all) = (mid.polynomials.len(), self.records.end.polynomials.len());
+        let (before, total) = (mid.polynomials.len(), self.records.end.polynomials.len());
         if per_pass == 0 {
             return;
         }
-        let before = if self.is_hybrid() { before } else { all };
-        let are_whole_passes = before.is_multiple_of(per_pass) && all.is_multiple_of(per_pass) && before <= all;
-        self.logged_passes = are_whole_passes.then(|| [before / per_pass, (all - before) / per_pass]);
+        let before = if self.is_hybrid() { before } else { total };
+        let are_whole_passes = before.is_multiple_of(per_pass) && total.is_multiple_of(per_pass) && before <= total;
+        self.logged_passes = are_whole_passes.then(|| [before / per_pass, (total - before) / per_pass]);
     }
 
     /// Compares the numbers of passes.

@@ -190,12 +190,12 @@ impl<'a> Search<'a> {
         let divides_counts =
             |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
         let sizes = self.row_sizes();
-        let all: usize = sizes.iter().map(|(_, size)| size).sum();
-        if divides_counts(all) {
+        let total: usize = sizes.iter().map(|(_, size)| size).sum();
+        if divides_counts(total) {
             return starts;
         }
         let mut sets = list_subsets(&sizes);
-        sets.retain(|set| !set.is_empty() && divides_counts(all - set.iter().map(|(_, size)| size).sum::<usize>()));
+        sets.retain(|set| !set.is_empty() && divides_counts(total - set.iter().map(|(_, size)| size).sum::<usize>()));
         starts.extend(sets.into_iter().take(MAX_MISTAKES).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
     }

@@ -78,9 +78,11 @@ impl DesignMatrix {
         }
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
         let problem = FitProblem { columns: self, fits: &fits, square };
-        let all = self.indices.len();
-        let triple_columns = if all > MAX_FOR_TRIPLES { self.likely_count.min(MAX_FOR_TRIPLES) } else { all };
-        for (size, among) in [(1, all), (2, all), (3, triple_columns), (4, self.likely_count.min(MAX_FOR_QUADRUPLES))] {
+        let total = self.indices.len();
+        let triple_columns = if total > MAX_FOR_TRIPLES { self.likely_count.min(MAX_FOR_TRIPLES) } else { total };
+        for (size, among) in
+            [(1, total), (2, total), (3, triple_columns), (4, self.likely_count.min(MAX_FOR_QUADRUPLES))]
+        {
             let mut accepted = Vec::new();
             problem.search(&mut PartialSelection::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solve(chosen, &fits)

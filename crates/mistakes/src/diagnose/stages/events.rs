@@ -201,9 +201,9 @@ impl StepFacts {
     /// the polynomials do not fill whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.mid_states()?);
-        let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
-        let is_whole = size > 0 && first <= all && first.is_multiple_of(size) && all.is_multiple_of(size);
-        is_whole.then(|| (first / size, (all - first) / size))
+        let (first, total) = (middle.polynomials.len(), self.actual.end.polynomials.len());
+        let is_whole = size > 0 && first <= total && first.is_multiple_of(size) && total.is_multiple_of(size);
+        is_whole.then(|| (first / size, (total - first) / size))
     }
 
     /// Returns whether a logged pass (from 0) describes the motion from the start of the step to the positions `end`.

@@ -204,8 +204,8 @@ impl ZoneMotions {
     }
 
     fn explain(&self) -> Option<Explanation> {
-        let all = self.results.len();
-        let wrong = all - self.count_results(ZoneResult::Right);
+        let zone_count = self.results.len();
+        let wrong = zone_count - self.count_results(ZoneResult::Right);
         let count = |fault: WrongZones| self.count_results(ZoneResult::Wrong(fault));
         // The results that prove the failsafe right are checked first.
         let faults = [
@@ -224,7 +224,7 @@ impl ZoneMotions {
             let details = match fault {
                 WrongZones::KeepVelocities if self.has_stopped_otherwise || self.stop_ratios.is_empty() => Vec::new(),
                 WrongZones::KeepVelocities => vec![StageDetail::StoppedVelocities(ratios(&self.stop_ratios))],
-                _ => vec![StageDetail::ZoneCount { count: count(fault), of: all }],
+                _ => vec![StageDetail::ZoneCount { count: count(fault), of: zone_count }],
             };
             return Some(new_observation(StageFault::Zones(fault), details, wrong));
         }

@@ -111,8 +111,8 @@ fn explain_handover(wrong: &[&StepFacts], responses: &Responses) -> Option<Expla
     let mut or_response = false;
     for facts in wrong {
         let Some((expected, actual)) = facts.mid_states() else { continue };
-        let all = expected.polynomials.len();
-        if actual.polynomials.len() != all || facts.right_polynomials < all {
+        let polynomial_count = expected.polynomials.len();
+        if actual.polynomials.len() != polynomial_count || facts.right_polynomials < polynomial_count {
             continue;
         }
         positions |= find_difference(&expected.state.positions, &actual.state.positions).is_some();
