@@ -119,7 +119,7 @@ pub struct Submission {
     pub is_withheld: bool,
     /// Whether staff has published the assignment's hidden groups.
     #[serde(skip)]
-    pub is_published: bool,
+    pub(super) is_published: bool,
     /// The last error of the grader on this submission. Only staff see it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
