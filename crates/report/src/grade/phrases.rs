@@ -1,6 +1,8 @@
 //! Sentences about a grade that appear in several formats.
 use super::clearest_scene;
-use crate::{explain, number::format_count, style::Style, untrusted_text::to_one_line, words};
+use crate::{
+    explain, number::format_count, style::Style, untrusted_text::to_one_line, words, words::explanation::capitalize,
+};
 use fosssim_findings::{FindingKind, Grade, SceneGrade, Verdict, disclosure::DisclosedFinding};
 pub use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
@@ -91,9 +93,12 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
     match scene.and_then(find_wrong_state) {
         Some(first) => {
             let line = words::describe_first_difference(first);
-            vec![words::explanation::capitalize(line.trim_start_matches("first difference: "))]
+            vec![capitalize(line.trim_start_matches("first difference: "))]
         }
-        None => words::explanation::exact_forms(mistake),
+        None => {
+            let forms = words::explanation::exact_forms(mistake);
+            forms.iter().map(|form| capitalize(form.trim_end_matches('.')) + ".").collect()
+        }
     }
 }
 

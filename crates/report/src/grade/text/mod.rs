@@ -7,7 +7,7 @@ mod table;
 
 pub use table::{render_table, shorten_name};
 
-use super::{super::style::Style, describe_missing_points, format_points, format_score};
+use super::{super::style::Style, describe_missing_points, format_score};
 use crate::untrusted_text::{clean_output, strip_control_characters, to_one_line};
 use crate::{number::format_count, smallest, style::TextStyle, words};
 use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
@@ -144,14 +144,8 @@ impl Text<'_> {
 
 /// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
 pub fn describe_extra_points(grade: &Grade) -> String {
-    grade.extra_points().map_or_else(String::new, |(reached, max_points)| {
-        format!(
-            ", {} of {} extra point{}",
-            format_points(reached),
-            format_points(max_points),
-            if format_points(max_points) == "1" { "" } else { "s" }
-        )
-    })
+    let score = |(reached, max_points)| format_score(reached, max_points).replace("point", "extra point");
+    grade.extra_points().map_or_else(String::new, |points| format!(", {}", score(points)))
 }
 
 /// Names the rule book that gives the verdict. The text is empty if the fair rules were used and both books agree.
