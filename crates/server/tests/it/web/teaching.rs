@@ -251,7 +251,7 @@ fn check_bad_marks(teacher: &Client, ada: &Client, id: i64) {
 /// Checks that a submission is compared with one of another student by login, and with the same student's by number.
 fn check_beside(teacher: &Client, [one, mended]: [i64; 2]) {
     let page = teacher.get(&format!("/c/physics/s/{one}/beside?with=ada")).expect(200).text();
-    assert!(page.contains("Both are accepted on the same scenes") && page.contains("of 100"), "{page}");
+    assert!(page.contains("Both have the same verdict on every scene") && page.contains("of 100"), "{page}");
     teacher.get(&format!("/c/physics/s/{one}/beside?with=carl")).expect(404);
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);
     let page = teacher.get(&format!("/c/physics/s/{mended}/beside?with=1")).expect(200).text();
