@@ -253,7 +253,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   teacher.complaints.splice(0);
   await other.fill("ada");
   await page.getByRole("button", { name: "Compare" }).click();
-  await page.getByText("Both are accepted on the same scenes").waitFor();
+  await page.getByText("Both have the same verdict on every scene").waitFor();
   await checkAccessibility(page);
   // "Back" of an error page returns to the form, which keeps what was typed.
   await page.goto(`${address}/c/physics/s/1`);
