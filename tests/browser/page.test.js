@@ -719,7 +719,7 @@ test("the page of a course has its suite and scenes, and gives the points of wha
     ).stdout,
   );
   // The scene is also found by the trace's name.
-  await page.getByRole("button", { name: "mine", exact: true }).click();
+  await page.getByRole("button", { name: "own/mine", exact: true }).click();
   await page.waitForFunction(() => document.documentElement.dataset.checked === "1");
   assert.match(await readStatus(page), /^mine\.bin: wrong answer/);
   assert.deepEqual(complaints, []);
