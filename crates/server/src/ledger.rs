@@ -236,7 +236,7 @@ pub struct GradeChange<'a> {
     pub reason: &'a str,
 }
 
-/// Makes a result count, and records the result that counted before.
+/// Makes a result count, and records the result that counted previously.
 ///
 /// # Errors
 ///

@@ -11,7 +11,7 @@ use anyhow::{Context, Result, anyhow, bail};
 ///
 /// # Errors
 ///
-/// Fails if the text is not such a pair.
+/// Fails if the text does not describe a pair and its motion.
 pub(in crate::cli) fn parse_motion(text: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = text.split(':').collect::<Vec<_>>();
     let kind_name = points.remove(0);

@@ -309,7 +309,7 @@ impl FromRow for Regrade {
 }
 
 /// Selects the jobs of a regrade, with their results and the results that count. After the regrade is applied, these
-/// are the results that counted before.
+/// are the results that counted previously.
 macro_rules! regraded {
     ($columns:literal, $rest:expr) => {
         concat!(

@@ -1,6 +1,6 @@
 //! Shows a report as a part of its submission's page. The report contains output of untrusted programs, which is
-//! escaped. As a second protection, only this server's script can run, and a report with elements that send or load
-//! something is not shown.
+//! escaped. As a second line of defense, only this server's script can run, and a report with elements that send or
+//! load something is not shown.
 use crate::{domain::Member, problem::Problem, task::OutputFile};
 
 /// The maximum size in bytes of a report that is shown on a page. The grader's reports have at most three megabytes.
