@@ -171,7 +171,14 @@ fn documents_say_how_many_mistakes_and_variants_there_are() {
     let states = rows.iter().filter(|row| is_state_mistake(row)).count();
     let (wrong, variants) = (count("wrong") - states, count("variant"));
     for (document, sentences) in [
-        ("README.md", vec![format!("all {wrong} documented mistakes"), format!("of {variants} correct variants")]),
+        (
+            "README.md",
+            vec![
+                format!("all {wrong} documented mistakes"),
+                format!("have {states} further mistakes"),
+                format!("of {variants} correct variants"),
+            ],
+        ),
         (
             "docs/rules/measurements.md",
             vec![format!("all {wrong} mistakes and"), format!("and {variants} correct variants")],
