@@ -62,22 +62,16 @@ impl Diagnosis {
         let mut likely = 0;
         for common in &self.common {
             let explained = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
-            let name = if common.is_not_finite() {
-                "First value that is not finite"
-            } else {
-                likely += 1;
-                match (likely, common.is_unexplained()) {
-                    (_, true) => "Most frequent fault",
-                    (1, _) if explained == wrong => "Likely cause of",
-                    (1, _) => "Most frequent likely cause",
-                    _ => "Another likely cause",
-                }
-            };
+            likely += usize::from(!common.is_not_finite());
             let traces = format_count(wrong as u64, "wrong trace");
-            let heading = match (name, wrong) {
-                ("Likely cause of", 1) => format!("{name} the only wrong trace"),
-                ("Likely cause of", _) => format!("{name} all {traces}"),
-                _ => format!("{name} ({explained} of {traces})"),
+            let share = format!("({explained} of {traces})");
+            let heading = match likely {
+                _ if common.is_not_finite() => format!("First value that is not finite {share}"),
+                _ if common.is_unexplained() => format!("Most frequent fault {share}"),
+                1 if explained < wrong => format!("Most frequent likely cause {share}"),
+                1 if wrong == 1 => "Likely cause of the only wrong trace".to_owned(),
+                1 => format!("Likely cause of all {traces}"),
+                _ => format!("Another likely cause {share}"),
             };
             let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, &heading));
             text += &render_mistakes(std::slice::from_ref(common), style);

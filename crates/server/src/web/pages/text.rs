@@ -46,15 +46,10 @@ pub(super) fn shorten(text: &str) -> String {
 pub(super) fn difference(old: &Option<String>, new: &Option<String>) -> String {
     let read = |points: &Option<String>| points.as_ref()?.parse::<f64>().ok();
     let Some((old, new)) = read(old).zip(read(new)) else { return String::new() };
-    let points = format_points((new - old).abs());
-    let sign = if points == "0" {
-        ""
-    } else if new < old {
-        "\u{2212}"
-    } else {
-        "+"
-    };
-    format!("{sign}{points}")
+    match format_points((new - old).abs()) {
+        none if none == "0" => none,
+        points => format!("{}{points}", if new < old { '\u{2212}' } else { '+' }),
+    }
 }
 
 /// Formats a verdict's code, the points and, if it is known, the maximum.
