@@ -1,5 +1,5 @@
 //! Documents and comments for readers: links work, sentences are short, and nouns name things.
-use crate::tree::{files, name, root, text};
+use crate::tree::{files, name, root, sources, text};
 use std::path::{Path, PathBuf};
 
 /// Readers must read longer sentences twice.
@@ -227,7 +227,21 @@ fn quoted(text: &str) -> impl Iterator<Item = &str> {
     text.split('`').skip(1).step_by(2)
 }
 
-/// Each invariant names a test or a command that checks it, and all named files exist.
+/// Each source that a document names exists. A document may omit the beginning of its path.
+#[test]
+fn named_sources_exist() {
+    let sources: Vec<String> = sources().iter().map(|path| format!("/{}", name(path))).collect();
+    for document in documents() {
+        let is_missing = |word: &&str| {
+            let is_source = word.ends_with(".rs") && !word.contains(['<', '{', '*', ' ']);
+            is_source && !sources.iter().any(|source| source.ends_with(&format!("/{word}")))
+        };
+        let missing: Vec<String> = quoted(&text(&document)).filter(is_missing).map(str::to_owned).collect();
+        assert!(missing.is_empty(), "{} names files that do not exist: {missing:#?}", document.display());
+    }
+}
+
+/// Each invariant names a test or a command that checks it.
 #[test]
 fn invariants_name_what_holds_them() {
     let page = text(&root().join("ARCHITECTURE.md"));
@@ -238,11 +252,4 @@ fn invariants_name_what_holds_them() {
         let (_, held) = invariant.split_once("**").expect("an end of the bold text");
         assert!(quoted(held).next().is_some(), "nothing holds: {invariant}");
     }
-    let files = quoted(&page).filter(|word| word.ends_with(".rs") && word.contains('/') && !word.contains(['<', '{']));
-    // Rows of a table may shorten a path whose beginning is in the same row.
-    let missing: Vec<&str> = files
-        .filter(|file| file.starts_with("crates/") || file.starts_with("tests/"))
-        .filter(|file| !root().join(file).exists())
-        .collect();
-    assert!(missing.is_empty(), "ARCHITECTURE.md names files that do not exist: {missing:#?}");
 }
