@@ -198,7 +198,7 @@ fn a_grade_names_what_its_scenes_show_together() {
         ("near-pairs-half-planes-doubled", "t2m3@1", "all pairs of a particle and a half-plane are reported twice."),
         ("jacobian-drag-missing", "t1m3", "The derivative of drag by velocities is not written yet, or adds nothing."),
         ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),
-        ("gravity-missing", "t1m1", "The change of velocity in explicit Euler is missing."),
+        ("gravity-missing", "t1m1", "The update of velocities in explicit Euler is missing."),
     ];
     let paths = grading::submit(&workspace, &cases.map(|(mistake, ..)| mistake));
     for ((mistake, suite, sentence), path) in cases.into_iter().zip(paths) {

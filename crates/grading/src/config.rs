@@ -244,12 +244,12 @@ pub(super) fn read_with_problems(text: &str) -> (Suite, Vec<(Position, String)>)
     let notes = notes.filter_map(|mistake| read_mistake(&mut problems, mistake)).collect();
     let groups = raw.group.unwrap_or_default().into_iter();
     let hints = raw.hints.unwrap_or(Hints::What);
-    let mut places = PositionCounter::new(text);
-    let read = |group: Spanned<RawGroup>| read_group(&mut places, &mut problems, group.into_inner(), hints);
+    let mut positions = PositionCounter::new(text);
+    let read = |group: Spanned<RawGroup>| read_group(&mut positions, &mut problems, group.into_inner(), hints);
     let groups: Vec<Group> = groups.map(read).collect();
     problems.sort_by_key(|(span, _)| span.start);
-    let place = |(span, message): Problem| (places.position(span.start), message);
-    let mut problems: Vec<(Position, String)> = problems.into_iter().map(place).collect();
+    let locate = |(span, message): Problem| (positions.position(span.start), message);
+    let mut problems: Vec<(Position, String)> = problems.into_iter().map(locate).collect();
     let mut names = BTreeSet::new();
     for group in &groups {
         if !group.name.is_empty() && !names.insert(&group.name) {
@@ -347,7 +347,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
 }
 
 /// Reads a group. `hints` is the level of detail for a group that does not set its own.
-fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
+fn read_group(positions: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
         problems.push((empty.span(), "the group's name is empty".to_owned()));
@@ -358,7 +358,7 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     let points = raw.points.unwrap_or(1.0);
     let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default().into_iter();
     let pattern = |pattern: Spanned<String>| {
-        let at = places.position(pattern.span().start);
+        let at = positions.position(pattern.span().start);
         Pattern { text: pattern.into_inner(), position: at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));

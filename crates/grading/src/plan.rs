@@ -69,11 +69,11 @@ impl Plan {
     /// Returns the milestone whose programs the suite grades. If the file does not name it, this is the milestone whose
     /// programs can run the most scenes, or the first of several such milestones.
     pub fn assignment(&self) -> Assignment {
-        let can_run = |assignment: &Assignment| {
+        let count_runnable_scenes = |assignment: &Assignment| {
             self.scenes().filter(|task| task.scene.unknown_features(*assignment).next().is_none()).count()
         };
         // If several values are equal, `max_by_key` returns the last one.
-        let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(can_run);
+        let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(count_runnable_scenes);
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 

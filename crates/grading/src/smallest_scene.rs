@@ -80,7 +80,8 @@ pub struct WrongScene<'a> {
 /// Returns the causes of the wrong scenes: the likely mistakes, the ways in which the program failed, and for a few
 /// scenes an unknown cause.
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
-    let likely = likely.iter().filter(|explanation| explanation.is_about_program() || explanation.is_not_finite());
+    let likely =
+        likely.iter().filter(|explanation| explanation.is_about_program() || explanation.reports_non_finite_value());
     let likely = likely.map(|mistake| WrongReason::Mistake(mistake.clone().into()));
     let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
     for reason in likely.chain(wrong.iter().filter_map(|wrong_scene| WrongReason::from_end(wrong_scene.ended))) {

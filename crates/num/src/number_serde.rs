@@ -52,58 +52,58 @@ pub trait WrittenNumbers: Sized {
     /// The value's serialized form.
     type Form: Serialize + DeserializeOwned;
     /// Returns the value's serialized form.
-    fn write(&self) -> Self::Form;
+    fn to_form(&self) -> Self::Form;
     /// Returns the value that has this serialized form.
-    fn read(form: Self::Form) -> Self;
+    fn from_form(form: Self::Form) -> Self;
 }
 
 impl WrittenNumbers for f64 {
     type Form = WrittenNumber;
-    fn write(&self) -> WrittenNumber {
+    fn to_form(&self) -> WrittenNumber {
         WrittenNumber(*self)
     }
-    fn read(form: WrittenNumber) -> Self {
+    fn from_form(form: WrittenNumber) -> Self {
         form.0
     }
 }
 
 impl WrittenNumbers for [f64; 2] {
     type Form = [WrittenNumber; 2];
-    fn write(&self) -> [WrittenNumber; 2] {
+    fn to_form(&self) -> [WrittenNumber; 2] {
         self.map(WrittenNumber)
     }
-    fn read(form: [WrittenNumber; 2]) -> Self {
+    fn from_form(form: [WrittenNumber; 2]) -> Self {
         form.map(|number| number.0)
     }
 }
 
 impl WrittenNumbers for Vec2 {
     type Form = [WrittenNumber; 2];
-    fn write(&self) -> [WrittenNumber; 2] {
+    fn to_form(&self) -> [WrittenNumber; 2] {
         [WrittenNumber(self.x), WrittenNumber(self.y)]
     }
-    fn read([x, y]: [WrittenNumber; 2]) -> Self {
+    fn from_form([x, y]: [WrittenNumber; 2]) -> Self {
         Self::new(x.0, y.0)
     }
 }
 
 impl WrittenNumbers for Vec<f64> {
     type Form = Vec<WrittenNumber>;
-    fn write(&self) -> Vec<WrittenNumber> {
+    fn to_form(&self) -> Vec<WrittenNumber> {
         self.iter().copied().map(WrittenNumber).collect()
     }
-    fn read(form: Vec<WrittenNumber>) -> Self {
+    fn from_form(form: Vec<WrittenNumber>) -> Self {
         form.into_iter().map(|number| number.0).collect()
     }
 }
 
 impl<T: WrittenNumbers> WrittenNumbers for Option<T> {
     type Form = Option<T::Form>;
-    fn write(&self) -> Self::Form {
-        self.as_ref().map(T::write)
+    fn to_form(&self) -> Self::Form {
+        self.as_ref().map(T::to_form)
     }
-    fn read(form: Self::Form) -> Self {
-        form.map(T::read)
+    fn from_form(form: Self::Form) -> Self {
+        form.map(T::from_form)
     }
 }
 
@@ -112,7 +112,7 @@ impl<T: WrittenNumbers> WrittenNumbers for Option<T> {
 /// # Errors
 /// Fails if the serializer fails.
 pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
-    value.write().serialize(serializer)
+    value.to_form().serialize(serializer)
 }
 
 /// Deserializes a value, for serde's `with`.
@@ -120,5 +120,5 @@ pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> 
 /// # Errors
 /// Fails if the deserializer fails, or the text is not a number.
 pub fn deserialize<'de, T: WrittenNumbers, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    T::Form::deserialize(deserializer).map(T::read)
+    T::Form::deserialize(deserializer).map(T::from_form)
 }

@@ -461,7 +461,7 @@ view! {
         time: WrittenNumber = WrittenNumber(answer.decision.time()),
         /// The vector from the first object to the second, not normalized; null if the pair does not collide.
         normal: Option<[WrittenNumber; 2]> = match answer.decision {
-            Decision::Hit { normal, .. } => Some(normal.write()),
+            Decision::Hit { normal, .. } => Some(normal.to_form()),
             Decision::Miss { .. } => None,
         },
     }
@@ -478,7 +478,7 @@ struct RightApproachView {
 }
 
 fn to_pairs(list: &[Interval]) -> Vec<[WrittenNumber; 2]> {
-    list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
+    list.iter().map(|interval| [interval.lo, interval.hi].to_form()).collect()
 }
 
 impl From<&PairMotion> for MotionView {
@@ -487,11 +487,12 @@ impl From<&PairMotion> for MotionView {
             PairMotion::Particles { centers, radii } => (centers.to_vec(), radii.to_vec(), None),
             PairMotion::Edge { center, ends, radii } => (vec![center, ends[0], ends[1]], radii.to_vec(), None),
             PairMotion::HalfPlane { center, radius, point, normal } => {
-                let half_plane = HalfPlaneView { point: point.write(), normal: normal.write() };
+                let half_plane = HalfPlaneView { point: point.to_form(), normal: normal.to_form() };
                 (vec![center], vec![radius], Some(half_plane))
             }
         };
-        let point = |point: PointMotion| PointView { start: point.start.write(), displacement: point.shift.write() };
+        let point =
+            |point: PointMotion| PointView { start: point.start.to_form(), displacement: point.shift.to_form() };
         Self { points: moving.into_iter().map(point).collect(), radii: to_written_numbers(&radii), half_plane }
     }
 }

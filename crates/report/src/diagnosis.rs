@@ -62,11 +62,11 @@ impl Diagnosis {
         let mut likely = 0;
         for common in &self.common {
             let explained = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
-            likely += usize::from(!common.is_not_finite());
+            likely += usize::from(!common.reports_non_finite_value());
             let traces = format_count(wrong as u64, "wrong trace");
             let share = format!("({explained} of {traces})");
             let heading = match likely {
-                _ if common.is_not_finite() => format!("First value that is not finite {share}"),
+                _ if common.reports_non_finite_value() => format!("First value that is not finite {share}"),
                 _ if common.is_unexplained() => format!("Most frequent fault {share}"),
                 1 if explained < wrong => format!("Most frequent likely cause {share}"),
                 1 if wrong == 1 => "Likely cause of the only wrong trace".to_owned(),

@@ -23,7 +23,7 @@ pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<Stri
 /// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
 /// formats with a single line. Returns `None` if there are no explanations.
 pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
-    if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
+    if let Some(first) = explanations.first().filter(|first| first.reports_non_finite_value()) {
         return Some(describe(first));
     }
     let together: Vec<String> = explanations

@@ -48,7 +48,7 @@ impl Storage {
     /// Fails with status 503 if one of them can't be written. The message names it.
     pub async fn check_writable(&self) -> Result<(), Problem> {
         let checked = tokio::time::timeout(CHECK_TIMEOUT, self.check_writable_now()).await;
-        checked.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
+        checked.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store did not answer in time")))
     }
 
     async fn check_writable_now(&self) -> Result<(), Problem> {

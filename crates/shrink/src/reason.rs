@@ -48,7 +48,7 @@ impl WrongReason {
         let (fault, detail) = find_reason(scene, observation)?;
         let Some(detail) = detail else { return Some(fault) };
         let is_likely = |explanation: &Explanation| {
-            explanation.is_not_finite()
+            explanation.reports_non_finite_value()
                 || (explanation.is_about_program() && (explanation.is_complete() || explanation.names_stage()))
         };
         let mut explanations = diagnose::explain(scene, &observation.trace).into_iter();
@@ -62,7 +62,11 @@ impl WrongReason {
     pub fn is_reproduced(&self, scene: &Scene, observation: &Observation, is_only_reason: bool) -> bool {
         let Some((fault, detail)) = find_reason(scene, observation) else { return false };
         match (self, detail) {
-            (Self::Mistake(mistake), Some(FindingDetail::BeyondReach { .. })) if !mistake.is_not_finite() => false,
+            (Self::Mistake(mistake), Some(FindingDetail::BeyondReach { .. }))
+                if !mistake.reports_non_finite_value() =>
+            {
+                false
+            }
             (Self::Mistake(mistake), Some(_)) => is_shown(mistake, scene, observation, is_only_reason),
             (_, detail) => fault == *self && detail.is_none_or(is_clear_finding),
         }

@@ -122,7 +122,7 @@ impl PairResponse<'_> {
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let edge = y3 - y2;
         let alpha = clamp(student.dot(y1 - y2, edge) / student.dot(edge, edge));
-        let alpha = second_end_share(student, alpha);
+        let alpha = second_end_weight(student, alpha);
         let beta = 1.0 - alpha;
         let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {
             Vec2::zeros()
@@ -187,9 +187,8 @@ pub fn response_masses(student: Student, first: f64, second: f64) -> (f64, f64) 
     }
 }
 
-/// Returns the share of an edge's second end in this student's formulas.
-/// `alpha` is the share in the right formulas.
-pub fn second_end_share(student: Student, alpha: f64) -> f64 {
+/// Returns the weight of an edge's second end in this student's formulas. `alpha` is the right weight.
+pub fn second_end_weight(student: Student, alpha: f64) -> f64 {
     match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseEdgeMiddle) => 0.5,
         Some(Mistake::ResponseEdgeSwapped) => 1.0 - alpha,

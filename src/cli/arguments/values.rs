@@ -78,7 +78,7 @@ pub(in crate::cli) fn assignment_parser() -> impl TypedValueParser<Value = Assig
 /// Returns the parser for the reader of a page.
 pub(in crate::cli) fn audience_parser() -> impl TypedValueParser<Value = Audience> {
     word_parser(&[
-        ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
+        ("staff", Audience::Staff, "Staff, or a student on their own machine: everything in all groups"),
         ("student", Audience::Student, "The student: the visible groups, as the suite's hints allow"),
     ])
 }

@@ -136,7 +136,7 @@ pub(super) fn describe(
         note,
         first_finding: first,
         explanations: match reason {
-            WrongReason::Mistake(cause) if !cause.is_not_finite() => {
+            WrongReason::Mistake(cause) if !cause.reports_non_finite_value() => {
                 limit_explanations(drawing.hints, vec![add_example(cause, &explanations)])
             }
             _ => explanations,

@@ -8,14 +8,14 @@ fosssim_num::closed_set! {
     pub enum Area {
         /// The forces that act on particles.
         Forces = "Forces", "Look at what each force adds to the gradient, for each of its particles.";
-        /// The derivatives of forces by positions and velocities, which implicit integrators need.
+        /// The derivatives of forces with respect to positions and velocities, which implicit integrators need.
         Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
         /// The update of velocities by forces, and of positions by velocities.
         Integrator = "Integrator",
             "Look at the order in which a step changes velocities and positions, and at the values that it uses.";
         /// The repulsive force between bodies that are close to each other.
         Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
-        /// The search for the nearby pairs between which the penalty force acts.
+        /// The search for nearby pairs, on which the penalty force acts.
         NearPairs = "Search for nearby pairs", "Look at which pairs the search for nearby pairs finds, and how often.";
         /// The polynomials of two particles.
         ParticleParticle = "Particle-particle",

@@ -53,10 +53,10 @@ pub struct Explanation {
     /// The keys of mistakes that the trace refutes: no program with such a mistake could write the trace.
     #[serde(rename = "denies")]
     pub contradicted_keys: Vec<String>,
-    /// All guesses that would produce the polynomials, as one text each. The text contains the name of the polynomial.
-    /// The id of the known mistake follows, or a digest of the guess and a digest of its exact form. Digests do not
-    /// reveal a formula. The explanation's own guess comes first. For a polynomial without a guess, the text is only
-    /// its name.
+    /// All guesses that would produce the polynomials; the explanation's own guess is first. Each is a string with two
+    /// slashes: `EdgeOverlap/DIGEST/FORM` for a guess and a digest of its exact form, `EdgeOverlap/DIGEST/` for a guess
+    /// without forms, `EdgeOverlap/ID/` for a known mistake, and `EdgeOverlap//` if there is no guess. Digests do not
+    /// reveal a formula.
     pub claims: Vec<String>,
 }
 
@@ -137,7 +137,7 @@ impl Explanation {
 
     /// Returns whether the explanation reports the first value that is not finite. All levels of hints show it, except
     /// for the lowest.
-    pub const fn is_not_finite(&self) -> bool {
+    pub const fn reports_non_finite_value(&self) -> bool {
         matches!(self.topic, ExplanationTopic::NotFinite(_))
     }
 
@@ -240,7 +240,7 @@ impl Explanation {
     pub fn is_about_program(&self) -> bool {
         use PolynomialEvidence::{NearlyRight, Nothing};
         let is_nothing = matches!(self.topic, ExplanationTopic::Polynomials { found: Nothing | NearlyRight, .. });
-        !is_nothing && !self.is_other_scene() && !self.is_not_finite()
+        !is_nothing && !self.is_other_scene() && !self.reports_non_finite_value()
     }
 
     /// Returns whether the explanation reproduces every sample or names a wrong stage.

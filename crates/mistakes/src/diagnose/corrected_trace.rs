@@ -24,7 +24,7 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     let own = &replace_contradicted(own, likely);
     let agreements = likely
         .iter()
-        .filter(|explanation| !explanation.is_not_finite())
+        .filter(|explanation| !explanation.reports_non_finite_value())
         .flat_map(|explanation| find_agreement(own, explanation));
     let mut explanations: Vec<Explanation> = agreements.collect();
     if explanations.is_empty() {
@@ -34,7 +34,7 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
         };
     }
     // The step from which values are not finite is reported for each trace.
-    explanations.extend(own.iter().find(|explanation| explanation.is_not_finite()).cloned());
+    explanations.extend(own.iter().find(|explanation| explanation.reports_non_finite_value()).cloned());
     CorrectedTrace { agreed_count: explanations.len(), explanations }
 }
 
@@ -61,7 +61,7 @@ fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Expl
 /// Returns the explanation without its refuted parts, or `None` if no part is left.
 fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
-    if !refuted.contains(&one.key) || one.is_not_finite() {
+    if !refuted.contains(&one.key) || one.reports_non_finite_value() {
         return Some(Explanation { same_as: same_as.collect(), ..one.clone() });
     }
     let row = find(&same_as.next()?)?;

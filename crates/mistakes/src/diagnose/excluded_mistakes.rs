@@ -53,7 +53,8 @@ fn are_non_finite_values_explained(likely: &[Explanation], wrong: &[(&Scene, &[E
         |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
             Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
         };
-    let mut non_finite = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
+    let mut non_finite =
+        wrong.iter().filter(|(_, list)| list.iter().any(Explanation::reports_non_finite_value)).take(MAX_TRACES);
     non_finite.all(|(scene, _)| students.iter().any(|student| is_explained(scene, *student)))
 }
 
@@ -147,7 +148,9 @@ pub fn refuted_keys(
                 let mut named: Vec<String> = named.into_iter().cloned().collect();
                 named.retain(|key| !refuted.contains(key) && is_denied(key, &work));
                 refuted.extend(named);
-                if likely.iter().any(Explanation::is_not_finite) && are_non_finite_values_explained(&likely, wrong) {
+                if likely.iter().any(Explanation::reports_non_finite_value)
+                    && are_non_finite_values_explained(&likely, wrong)
+                {
                     refuted.push(Explanation::NOT_FINITE.to_owned());
                 }
                 return refuted;

@@ -45,7 +45,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::for_scene(scene).has_polynomials && pairs(scene).count() > MAX_PAIRS {
         return non_finite::explain_source(scene, source);
     }
-    let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
+    let TraceSamples { mut reference, non_finite_explanation, scan, detections } = sample_trace(scene, source);
     // In the contest, students write only the search for nearby pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
     let pairs = if is_contest { near_pairs::explain_pairs(&mut reference, scene, &scan) } else { None };
@@ -112,7 +112,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all.extend(stage);
     // The sort is stable, so a known mistake stays before equally good guesses.
     all.sort_by_key(|explanation| (explanation.is_unexplained(), !explanation.is_complete()));
-    all.extend(not_finite);
+    all.extend(non_finite_explanation);
     all.iter_mut().for_each(|explanation| explanation.contradicted_keys.clone_from(&denies));
     all
 }

@@ -119,7 +119,8 @@ fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
 /// Returns `None` if all values are finite.
 fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
-    let ends = || traces.iter().filter_map(|list| list.iter().find(|explanation| explanation.is_not_finite()));
+    let ends =
+        || traces.iter().filter_map(|list| list.iter().find(|explanation| explanation.reports_non_finite_value()));
     let agreeing =
         |explanation: &Explanation| ends().filter(|other| other.statement() == explanation.statement()).count();
     let likeliest = ends().rev().max_by_key(|explanation| agreeing(explanation))?;

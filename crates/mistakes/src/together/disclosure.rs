@@ -30,14 +30,14 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 }
 
 /// Returns the part of explanations that a hint level shows. At [`Hints::None`] this is nothing. At [`Hints::Where`] it
-/// is only the explanation of the first value that is not finite, if there is one ([`Explanation::is_not_finite`]). At
-/// [`Hints::What`] each explanation keeps the known mistakes that cannot be distinguished from it, but loses its
-/// details and its example. These need [`Hints::Full`].
+/// is only the explanation of the first value that is not finite, if there is one
+/// ([`Explanation::reports_non_finite_value`]). At [`Hints::What`] each explanation keeps the known mistakes that
+/// cannot be distinguished from it, but loses its details and its example. These need [`Hints::Full`].
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
         // A value that is not finite shows where the fault is, and no guess about the mistake.
-        Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
+        Hints::Where => explanations.into_iter().filter(Explanation::reports_non_finite_value).collect(),
         Hints::What => explanations
             .into_iter()
             .map(|mut explanation| {

@@ -127,7 +127,10 @@ pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     likely
         .into_iter()
         .filter(|likely| {
-            likely.reproduced > 0 || likely.names_stage() || likely.is_not_finite() || likely.is_unexplained()
+            likely.reproduced > 0
+                || likely.names_stage()
+                || likely.reports_non_finite_value()
+                || likely.is_unexplained()
         })
         .map(|likely| (likely.clone(), count_explained_scenes(grade, &likely)))
         .collect()

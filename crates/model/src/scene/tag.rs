@@ -1,4 +1,4 @@
-//! One tag: its attributes as written, with their positions, and all faults of their form and names.
+//! One tag: its attributes as written, with their positions, and all errors in their syntax and names.
 //!
 //! Values are neither translated nor interpreted here; `fields` does that.
 use std::{borrow::Cow, collections::BTreeSet, ops::Range};

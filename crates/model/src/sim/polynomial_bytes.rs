@@ -105,7 +105,7 @@ impl PolynomialBytes {
         &mut self.bytes[self.used_bytes..]
     }
 
-    /// Adds the bytes that were written into the [reserved](Self::reserve) memory to the list.
+    /// Appends `polynomials` polynomials, whose `bytes` bytes are already in the [reserved](Self::reserve) memory.
     #[inline]
     pub(super) fn count_added(&mut self, bytes: usize, polynomials: usize) {
         self.used_bytes += bytes;

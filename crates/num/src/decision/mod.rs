@@ -91,8 +91,9 @@ pub struct CertifiedDecision {
     /// nearly touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at
     /// most 1), or is `None` if a coefficient is not finite. The value is `None` for `Misses`.
     pub time: Option<[f64; 2]>,
-    /// The number of units `u` of the coefficients' bounds for which the decision is proved to be right, at least the
-    /// given `units` and at most [`MAX_MARGIN`]. The true number may be larger. It is 0 for `Borderline`.
+    /// The decision is proved to be right if no coefficient is wrong by more than `margin * u` times its bound, where
+    /// `u` is [`UNIT_ROUNDOFF`]. The margin is at least the given `units` and at most [`MAX_MARGIN`]; the true one may
+    /// be larger. It is 0 for `Borderline`.
     pub margin: f64,
     /// The level that was needed.
     pub level: Level,

@@ -84,7 +84,7 @@ impl Overlap<'_> {
     pub fn json(&self) -> String {
         let &Self { study, scene, trace, step, pair, .. } = self;
         let time = WrittenNumber(if study.collides { 0.0 } else { f64::INFINITY });
-        let normal = study.collides.then(|| study.normal.write());
+        let normal = study.collides.then(|| study.normal.to_form());
         to_document(&DetectView {
             schema: DETECT_SCHEMA,
             place: Some(PlaceView { scene, trace, step, pair, pass: None, passes: 1, logged: None }),
@@ -96,11 +96,11 @@ impl Overlap<'_> {
             right_approach: None,
             overlap: Some(OverlapView {
                 alpha: study.alpha.map(WrittenNumber),
-                normal: study.normal.write(),
+                normal: study.normal.to_form(),
                 distance: WrittenNumber(study.distance()),
                 radii_together: WrittenNumber(study.reach),
                 overlaps: self.overlaps(),
-                velocities: study.velocities.map(|velocity| velocity.write()),
+                velocities: study.velocities.map(|velocity| velocity.to_form()),
                 approach: WrittenNumber(study.approach()),
                 approaches: self.approaches(),
                 logged: self.logged,

@@ -20,7 +20,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
         let what = describe_likely(grade, &mistake) + &describe_note(grade, &mistake);
-        if mistake.is_not_finite() || mistake.is_unexplained() {
+        if mistake.reports_non_finite_value() || mistake.is_unexplained() {
             return format!("{what} (in {explained} of {wrong})");
         }
         let worth = describe_worth(grade, &mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
@@ -77,7 +77,8 @@ pub fn scene_sentence(scene: &SceneGrade) -> Option<String> {
     explain::render_sentence(&scene.corrected_explanations)
 }
 
-/// Returns the lines of a report about a scene's likely mistakes, as [`explain::explanation_texts`] does.
+/// Returns the lines of a report about a scene's likely mistakes. If no mistake explains the polynomials, the line is
+/// about the first wrong state, if there is one.
 pub fn scene_lines(scene: &SceneGrade, style: Style) -> Vec<String> {
     let lines = |mistake: &Explanation| match mistake.is_unexplained().then(|| describe_wrong_state(scene)).flatten() {
         Some(state) => vec![state],

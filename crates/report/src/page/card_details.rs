@@ -59,7 +59,10 @@ pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clo
 }
 
 /// Describes which cards the page does not contain completely.
-pub(super) fn describe_omitted<'a>(cards: impl Iterator<Item = Option<&'a Card>>, details: &[CardDetail]) -> String {
+pub(super) fn describe_reduced_cards<'a>(
+    cards: impl Iterator<Item = Option<&'a Card>>,
+    details: &[CardDetail],
+) -> String {
     let moving_cards = cards.zip(details).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
     let moving_details: Vec<CardDetail> = moving_cards.map(|(_, detail)| *detail).collect();
     let without =
@@ -96,7 +99,7 @@ mod tests {
     fn distribute_all(cards: &[Card]) -> (Vec<CardDetail>, String) {
         let all = || cards.iter().map(Some);
         let details = distribute(all());
-        let text = describe_omitted(all(), &details);
+        let text = describe_reduced_cards(all(), &details);
         (details, text)
     }
 

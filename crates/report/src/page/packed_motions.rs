@@ -108,9 +108,10 @@ fn exact_records(evidence: &Evidence) -> Vec<usize> {
 
 fn round_track(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
     let size = 4 * particles;
-    let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
-    let mut out = (kept.len() as u64).to_le_bytes().to_vec();
-    for record in kept {
+    let exact_records: Vec<usize> =
+        rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
+    let mut out = (exact_records.len() as u64).to_le_bytes().to_vec();
+    for record in exact_records {
         out.extend(to_le_bytes(&track.values[record * size..][..size]));
     }
     let mut last = vec![0_i64; 2 * particles];

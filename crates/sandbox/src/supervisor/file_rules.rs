@@ -47,10 +47,10 @@ const MACHINE_FILES: [&str; 6] = [
 /// The files from which runtimes read about their own process.
 const OWN_FILES: [&CStr; 9] =
     [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
-/// The folders in a process's own entry of `/proc` that it may list: the numbers of its threads, which some runtimes
-/// count, and its descriptors.
+/// The folders in a process's own `/proc` entry that the process may list: `task`, in which some runtimes count their
+/// threads, and `fd`.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
-/// Returns the parts of a process's own entry in `/proc` that are visible if no file rules protect the entry.
+/// Returns the parts of a process's own `/proc` entry that are visible if no file rules protect the entry.
 pub(super) fn visible_entry_parts() -> impl Iterator<Item = &'static str> {
     OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
 }

@@ -70,7 +70,7 @@ pub(super) fn copy_blocks(from: &File, to: &mut File, max_bytes: u64) -> io::Res
     let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);
     loop {
-        // If the file system cannot detect holes, the file has no holes.
+        // If the file system cannot report holes, the whole file is read. Blocks of zeros are skipped below.
         at = match rustix::fs::seek(from, rustix::fs::SeekFrom::Data(at)) {
             Err(Errno::NXIO) => break,
             Err(Errno::INVAL) => at,

@@ -69,7 +69,7 @@ pub(super) async fn serve(arguments: &ServiceArguments) -> Result<()> {
         incoming: folders.incoming.clone(),
         low_water: arguments.low_water * MIB,
         public: public.clone(),
-        client_address: arguments.client_address.clone(),
+        client_ip_source: arguments.client_address.clone(),
         max_pause,
         requests_per_minute: arguments.requests_per_minute,
         limits: TransferLimits::new(

@@ -95,7 +95,7 @@ pub struct Options {
     /// The public URL of the service.
     pub public: String,
     /// The source of a client's address: the connection itself, or a header of the proxy.
-    pub client_address: Option<ClientIpSource>,
+    pub client_ip_source: Option<ClientIpSource>,
     /// The maximum pause while a request's body is received.
     pub max_pause: Duration,
     /// The maximum number of requests of one account per minute.

@@ -24,8 +24,8 @@ pub enum Rejection {
     /// The message is not signed with RS256.
     #[error("the message is not signed by RS256 with a named key")]
     Form,
-    /// The platform has no key with this name.
-    #[error("the platform publishes no key with the name in the message")]
+    /// The platform has no key with this ID.
+    #[error("the platform publishes no key with the ID that the message names")]
     UnknownKey,
     /// The platform's keys can't be read.
     #[error("the platform's keys can't be read now")]

@@ -42,7 +42,7 @@ pub fn openapi() -> String {
 /// Returns the router for all requests.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
-    let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);
+    let client_ip_source = app.client_ip_source.clone().unwrap_or(ClientIpSource::ConnectInfo);
     let pages = pages::router().layer(middleware::from_fn_with_state(app.clone(), pages::show_problems));
     Router::new()
         .merge(api)
@@ -56,6 +56,6 @@ pub fn router(app: App) -> Router {
         .layer(middleware::from_fn_with_state(app.clone(), guard::renew_cookie))
         .layer(middleware::from_fn_with_state(app.clone(), guard::add_headers))
         .layer(middleware::from_fn_with_state(app.clone(), guard::log_request))
-        .layer(Extension(client_address))
+        .layer(Extension(client_ip_source))
         .with_state(app)
 }

@@ -25,7 +25,7 @@ pub struct TraceSamples<'a> {
     /// The reference, and the rest of its budget.
     pub reference: Reference<'a>,
     /// The explanation of the first value that is not finite.
-    pub not_finite: Option<Explanation>,
+    pub non_finite_explanation: Option<Explanation>,
     /// The selected wrong and right steps.
     pub scan: Scan,
     /// The detections whose inputs are known.
@@ -44,7 +44,7 @@ pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a
         detections.examine_step(&mut reference, step, &steps.frames);
     }
     TraceSamples {
-        not_finite: first.explain(),
+        non_finite_explanation: first.explain(),
         scan: scanner.into_scan(steps.outline),
         detections: detections.into_samples(),
         reference,

@@ -10,7 +10,7 @@ use fosssim_model::assignments::Assignment;
 use fosssim_student::{self as student, Row, Student};
 
 mod heads;
-mod not_finite;
+mod non_finite;
 mod probes;
 mod states;
 

@@ -44,7 +44,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         if number == 0 {
             let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, likely_heading(&mistakes)));
         }
-        let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
+        let verb = if mistake.reports_non_finite_value() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = strip_control_characters(&describe_likely(grade, mistake));
         let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");

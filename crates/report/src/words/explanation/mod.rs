@@ -146,7 +146,7 @@ fn describe_step_area(key: &str) -> &'static str {
             "Look at Newton's method: the values that each iteration uses, and when it ends."
         }
         () if key.starts_with("linear") => {
-            "Look at where forces and matrix are computed, and at how the solution of the system is applied."
+            "Look at where the forces and the matrix are computed, and at how the solution of the system is applied."
         }
         () if contains_any(&["-velocity", "behind"]) => Area::Integrator.advice(),
         () => "Look at how forces change velocities, and velocities change positions.",

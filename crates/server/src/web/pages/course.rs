@@ -109,8 +109,8 @@ struct MembersPage {
     /// The URL of the next page of members; `None` on the last page.
     after: Option<String>,
     platforms: Vec<String>,
-    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
-    /// detected.
+    /// The ID of the course's newest event when the page was rendered. Each form sends it with the change, to
+    /// detect conflicts.
     seen_event: i64,
     /// The login of the person whom the last request changed, and a sign-in link if one was created.
     update: Option<(String, Option<String>)>,
@@ -142,7 +142,7 @@ pub(super) struct NewMember {
     login: String,
     name: String,
     role: String,
-    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    /// The ID of the newest event when the page was rendered. The form sends it with the change, to detect conflicts.
     #[serde(rename = "seen")]
     seen_event: Option<i64>,
 }

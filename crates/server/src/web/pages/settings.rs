@@ -96,7 +96,7 @@ impl Grading {
 #[derive(Deserialize)]
 pub(super) struct NewSettings {
     title: String,
-    /// The assignment's revision when the page was made.
+    /// The assignment's revision when the page was rendered.
     #[serde(default)]
     revision: String,
     visible: Option<String>,

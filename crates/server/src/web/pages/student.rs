@@ -28,8 +28,8 @@ struct StudentPage {
     work: StudentHistory,
     /// Sentences about the changes between attempts, by the ID of the later submission.
     changes: BTreeMap<i64, String>,
-    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
-    /// detected.
+    /// The ID of the course's newest event when the page was rendered. Each form sends it with the change, to
+    /// detect conflicts.
     seen_event: i64,
 }
 
@@ -46,8 +46,8 @@ struct ImportPage {
     is_done: bool,
     /// A table of all sign-in links, as a `data:` URL that the browser can save.
     download: String,
-    /// The ID of the course's newest event when the page was made. Changes send it back, so that conflicts are
-    /// detected.
+    /// The ID of the course's newest event when the page was rendered. Each form sends it with the change, to
+    /// detect conflicts.
     seen_event: i64,
 }
 
@@ -76,7 +76,7 @@ pub(super) struct NewExtension {
     due: String,
     #[serde(default)]
     due_zone: String,
-    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    /// The ID of the newest event when the page was rendered. The form sends it with the change, to detect conflicts.
     #[serde(rename = "seen")]
     seen_event: Option<i64>,
 }
@@ -87,7 +87,7 @@ pub(super) struct NewMark {
     points: String,
     #[serde(default)]
     comment: String,
-    /// The time of the mark when the page was made. The form sends it back, so that conflicts are detected.
+    /// The time of the mark when the page was rendered. The form sends it with the change, to detect conflicts.
     marked_at: Option<String>,
 }
 
@@ -95,7 +95,7 @@ pub(super) struct NewMark {
 pub(super) struct ImportedTable {
     table: String,
     import: Option<String>,
-    /// The ID of the newest event when the page was made. The form sends it back, so that conflicts are detected.
+    /// The ID of the newest event when the page was rendered. The form sends it with the change, to detect conflicts.
     #[serde(rename = "seen")]
     seen_event: Option<i64>,
 }

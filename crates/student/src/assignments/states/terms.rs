@@ -172,23 +172,23 @@ terms! {
     }
     Part::Integrator(Integrator::ExplicitEuler) => {
         Explicit "explicit" "Explicit Euler": "x += h v, v += h F / m" [0 0 0] true STEP;
-        ExplicitPositions "explicit-positions" "The change of position in explicit Euler": "h v_old" [0 1 0] false
+        ExplicitPositions "explicit-positions" "The update of positions in explicit Euler": "h v_old" [0 1 0] false
             POSITIONS;
-        ExplicitVelocities "explicit-velocities" "The change of velocity in explicit Euler": "h F / m" [-1 1 0] false
+        ExplicitVelocities "explicit-velocities" "The update of velocities in explicit Euler": "h F / m" [-1 1 0] false
             &[VELOCITIES[0], VELOCITIES[1], VELOCITIES[2], VELOCITIES[3], VELOCITIES[4], &[Slip::NotCleared] ];
     }
     Part::Integrator(Integrator::SymplecticEuler) => {
         Symplectic "symplectic" "Symplectic Euler": "v += h F / m, x += h v" [0 0 0] true STEP;
-        SymplecticPositions "symplectic-positions" "The change of position in symplectic Euler": "h v_new" [0 1 0] false
-            POSITIONS;
-        SymplecticVelocities "symplectic-velocities" "The change of velocity in symplectic Euler": "h F / m" [-1 1 0]
+        SymplecticPositions "symplectic-positions" "The update of positions in symplectic Euler": "h v_new" [0 1 0]
+            false POSITIONS;
+        SymplecticVelocities "symplectic-velocities" "The update of velocities in symplectic Euler": "h F / m" [-1 1 0]
             false &[VELOCITIES[0], VELOCITIES[1], VELOCITIES[2], VELOCITIES[3], VELOCITIES[4],
             &[Slip::ForcesAfterMove, Slip::NotCleared] ];
     }
     Part::Integrator(Integrator::LinearizedImplicitEuler) => {
         Linear "linear" "Linearized implicit Euler": "(M + h Hv + h^2 Hx) dv = h F, v += dv, x += h v" [0 0 0] true
             SYSTEM;
-        LinearPositions "linear-positions" "The change of position in linearized implicit Euler": "h v_new" [0 1 0]
+        LinearPositions "linear-positions" "The update of positions in linearized implicit Euler": "h v_new" [0 1 0]
             false POSITIONS;
         LinearVelocities "linear-velocities" "The solution of the system in linearized implicit Euler": "v += dv"
             [0 0 0] false &[SUM, VECTOR, EACH, &[Slip::Assigned, Slip::Step(1)] ];
@@ -207,7 +207,7 @@ terms! {
             Slip::Loose(2), Slip::Loose(3), Slip::Loose(4), Slip::Loose(5)]];
         ImplicitVelocities "implicit-velocities" "The solution of the system in implicit Euler": "v_i += d" [0 0 0]
             false &[SUM, &[Slip::Assigned] ];
-        ImplicitPositions "implicit-positions" "The change of position in implicit Euler": "h v_new" [0 1 0] false
+        ImplicitPositions "implicit-positions" "The update of positions in implicit Euler": "h v_new" [0 1 0] false
             POSITIONS;
         ImplicitRight "implicit-right" "The force on the right-hand side of implicit Euler": "h F" [0 1 0] false RIGHT;
         ImplicitMomentum "implicit-momentum" "The momentum on the right-hand side of implicit Euler": "-M (v_i - v_0)"

@@ -182,7 +182,7 @@ fn correct_programs_of_these_milestones_have_no_explanation() {
             _ => with_round_off(&scene, &trace(&scene, &[])),
         };
         let told = explain(&scene, &trace);
-        assert!(told.iter().all(Explanation::is_not_finite), "{name}: {told:#?}");
+        assert!(told.iter().all(Explanation::reports_non_finite_value), "{name}: {told:#?}");
     }
 }
 

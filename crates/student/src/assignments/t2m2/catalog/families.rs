@@ -102,7 +102,11 @@ const PAIR_FAMILY: MistakeFamily = MistakeFamily {
         ("approach, slope twice", &[Row("pp-approach-slope-twice"), SUPPLIED_APPROACH, Row("ph-approach-slope-twice")]),
         (
             "approach, constant's sign",
-            &[Row("pp-separating"), SUPPLIED_APPROACH, No("its sign is part of a factor: ph-approach-no-speed")],
+            &[
+                Row("pp-separating"),
+                SUPPLIED_APPROACH,
+                No("the constant's sign depends on the factor dx.n, which ph-approach-no-speed omits"),
+            ],
         ),
         (
             "approach at the start",
@@ -214,7 +218,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
             &[
                 Row("failsafe-center-at-end"),
                 No("a motion has no end"),
-                No("the momentum is the same up to round-off: momentum-from-end"),
+                No("the angular momentum is the same up to round-off, as in the variant momentum-from-end"),
                 Row("failsafe-inertia-at-end"),
             ],
         ),
@@ -262,21 +266,21 @@ const FAMILIES: [&MistakeFamily; 7] =
 
 /// The prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
 const SINGLE_KIND_PREFIXES: &[(&str, &str)] = &[
-    ("pe-quartic-", "a product of the quartic"),
-    ("pe-cubic-", "a product of the quartic"),
+    ("pe-quartic-", "it concerns one product of the quartic"),
+    ("pe-cubic-", "it concerns one product of the quartic"),
     ("pe-no-cubic", "a coefficient of the quartic"),
-    ("pe-square-", "a product of the quartic"),
-    ("pe-linear-", "a product of the quartic"),
-    ("pe-constant-", "a product of the quartic"),
+    ("pe-square-", "it concerns one product of the quartic"),
+    ("pe-linear-", "it concerns one product of the quartic"),
+    ("pe-constant-", "it concerns one product of the quartic"),
     ("pp-contact-displacements-swapped", "only two particles have displacements that look alike"),
     ("pe-radius-unscaled", "only the quartic has a denominator"),
     ("pe-displacements-swapped", "only an edge has two ends"),
     ("pe-endpoints-swapped", "only an edge has two ends"),
-    ("pe-approach-", "only the quintic is supplied"),
+    ("pe-approach-", "only the approach of edges is supplied"),
     ("pe-contact-alpha-", "only an edge has alpha"),
     ("pe-contact-other-end", "only an edge has alpha"),
     ("pe-contact-nearest-end", "only an edge has ends"),
-    ("pe-radius-index", "the radius of another body; the first edge's is a separate row"),
+    ("pe-radius-index", "it is the radius of another body; the first edge's radius is a separate row"),
     ("ph-overlap-signed", "only a half-plane has sides"),
     ("ph-first-half-plane", "the loops over particles and edges already have their indices"),
     ("ph-no-normal-square", "only a half-plane has a normal"),
