@@ -46,8 +46,8 @@ const MAX_EXAMPLES: usize = 3;
 
 /// Returns a list, for a message, of the names that are most similar to a typed one.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
-    let shown = suggestions::find_nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
-    if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }
+    let examples = suggestions::find_nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
+    if names.len() > MAX_EXAMPLES { format!("{examples} and {} more", names.len() - MAX_EXAMPLES) } else { examples }
 }
 
 #[cfg(test)]

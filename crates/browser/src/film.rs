@@ -71,17 +71,17 @@ pub(crate) struct Film {
 
 /// Reads a scene. If it has no errors, it is also simulated.
 pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
-    let (scene, problems, omitted) = match scene::read(name, xml) {
+    let (scene, problems, omitted_count) = match scene::read(name, xml) {
         Ok(LoadedScene { scene, warnings, .. }) => (Some(scene), warnings, 0),
-        Err(errors) => (None, errors.list, errors.omitted),
+        Err(errors) => (None, errors.list, errors.omitted_count),
     };
     let problems: Vec<Value> = problems.iter().map(problem_view).collect();
-    let Some(scene) = scene else { return (json!({ "problems": problems, "more": omitted }), None) };
+    let Some(scene) = scene else { return (json!({ "problems": problems, "more": omitted_count }), None) };
     let (film, stopped) = Film::for_scene(scene, host);
     let Film { scene, steps, .. } = &film;
     let value = json!({
         "problems": problems,
-        "more": omitted,
+        "more": omitted_count,
         "steps": steps,
         "of": scene.step_count(),
         "dt": scene.time_step,

@@ -279,13 +279,13 @@ fn find_detailed_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout
     let (steps, max_steps) =
         (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near_steps = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
-    let mut chosen: Vec<u32> = Vec::new();
+    let mut chosen_steps: Vec<u32> = Vec::new();
     for step in near_steps.chain(focus.iter().map(|focus| focus.step)) {
-        if (1..=steps).contains(&step) && !chosen.contains(&step) && chosen.len() < max_steps {
-            chosen.push(step);
+        if (1..=steps).contains(&step) && !chosen_steps.contains(&step) && chosen_steps.len() < max_steps {
+            chosen_steps.push(step);
         }
     }
-    chosen
+    chosen_steps
 }
 
 /// Returns the distances between two states, in positions and in velocities.

@@ -45,15 +45,16 @@ pub fn examine<'a, R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> ExaminedTrace<'a> {
-    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { MAX_KEPT_BYTES });
+    let mut kept_trace = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { MAX_KEPT_BYTES });
     let mut rulings = StepRulings::default();
-    let outcome = replay::judge(scene, kept.keep_from(&mut trace), options, &mut ObserverPair(&mut rulings, progress));
+    let outcome =
+        replay::judge(scene, kept_trace.keep_from(&mut trace), options, &mut ObserverPair(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
-        let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
+        let room = (MAX_KEPT_BYTES - kept_trace.bytes().len()) as u64;
         // After an error of reading, no more bytes are kept.
-        let _ = io::copy(&mut kept.keep_from(trace.take(room)), &mut io::sink());
+        let _ = io::copy(&mut kept_trace.keep_from(trace.take(room)), &mut io::sink());
     }
-    ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }
+    ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept_trace }
 }
 
 impl ExaminedTrace<'_> {

@@ -71,8 +71,8 @@ pub(crate) fn escape(name: &OsStr) -> String {
 }
 
 /// Returns the metadata of an open file. Fails if it is not a regular file.
-pub(crate) fn require_regular_file(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
-    let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
+pub(crate) fn require_regular_file(file: &File, printable_name: impl Fn() -> String) -> Result<Metadata, FileError> {
+    let metadata = file.metadata().map_err(|source| FileError::System { name: printable_name(), source })?;
     let kind = metadata.file_type();
     if kind.is_file() {
         return Ok(metadata);
@@ -83,5 +83,5 @@ pub(crate) fn require_regular_file(file: &File, shown: impl Fn() -> String) -> R
         () if kind.is_socket() => "a socket",
         () => "a device",
     };
-    Err(FileError::NotRegular { name: shown(), what })
+    Err(FileError::NotRegular { name: printable_name(), what })
 }

@@ -151,11 +151,11 @@ impl Folder {
     /// Fails if the file does not exist, is not a regular file, is reached through a link, or is longer than
     /// `max_bytes`.
     pub fn open_file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
-        let shown = || escape(name);
-        let file = self.open_beneath(name).map_err(|error| FileError::from_open_error(shown(), error))?;
-        let length = require_regular_file(&file, shown)?.len();
+        let printable_name = || escape(name);
+        let file = self.open_beneath(name).map_err(|error| FileError::from_open_error(printable_name(), error))?;
+        let length = require_regular_file(&file, printable_name)?.len();
         if length > max_bytes {
-            return Err(FileError::TooLong { name: shown(), length, limit: max_bytes });
+            return Err(FileError::TooLong { name: printable_name(), length, limit: max_bytes });
         }
         Ok((file, length))
     }

@@ -45,12 +45,12 @@ impl Grade {
         let before = self.earlier_grade.as_ref()?;
         let is_here = |group: &&EarlierGroup| self.groups.iter().any(|own| own.name == group.name);
         let groups: Vec<&EarlierGroup> = before.groups.iter().filter(is_here).collect();
-        let counted = || groups.iter().filter(|group| !group.extra);
+        let regular_groups = || groups.iter().filter(|group| !group.extra);
         let scenes = groups.iter().flat_map(|group| &group.scenes);
         let verdicts: BTreeMap<&str, &str> = scenes.map(|scene| (&*scene.scene, &*scene.code)).collect();
         let mut changes = GradeChanges {
-            earlier_points: counted().map(|group| group.points).sum(),
-            compared_points: counted().map(|group| group.max_points).sum(),
+            earlier_points: regular_groups().map(|group| group.points).sum(),
+            compared_points: regular_groups().map(|group| group.max_points).sum(),
             newly_right: Vec::new(),
             newly_wrong: Vec::new(),
             other_changes: Vec::new(),

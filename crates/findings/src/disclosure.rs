@@ -24,11 +24,11 @@ pub struct Disclosure {
 
 impl Disclosure {
     /// Creates a disclosure of everything that was found by judging a trace.
-    pub fn from_outcome(judged: &Outcome, rules: Rules) -> Self {
+    pub fn from_outcome(outcome: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
-            let found = judged.findings_by(book);
+            let found = outcome.findings_by(book);
             DisclosedBook {
-                ruling: judged.ruling(book),
+                ruling: outcome.ruling(book),
                 wrong_steps: found.wrong_steps,
                 counts: found.counts,
                 first_divergence: found.first_divergence.map(DisclosedFinding::Full),
@@ -38,10 +38,10 @@ impl Disclosure {
         Self {
             official: rules.official(),
             parity: book(Book::Parity),
-            fair: judged.fair.is_some().then(|| book(Book::Fair)),
-            residuals: Some(judged.parity.residuals),
-            damage: judged.damage.clone(),
-            trailing_bytes: judged.trailing_bytes,
+            fair: outcome.fair.is_some().then(|| book(Book::Fair)),
+            residuals: Some(outcome.parity.residuals),
+            damage: outcome.damage.clone(),
+            trailing_bytes: outcome.trailing_bytes,
         }
     }
 

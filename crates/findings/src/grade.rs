@@ -115,12 +115,12 @@ impl Grade {
     /// if there are no other groups.
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
         let has_others = groups.iter().any(|group| !group.extra);
-        let counted = || groups.iter().filter(move |group| !group.extra);
+        let regular_groups = || groups.iter().filter(move |group| !group.extra);
         let verdicts = groups.iter().filter(|group| !group.extra || !has_others).map(|group| group.verdict);
         (
             verdicts.max().unwrap_or(Verdict::NotRun),
-            counted().map(|group| group.points).sum(),
-            counted().map(|group| group.max_points).sum(),
+            regular_groups().map(|group| group.points).sum(),
+            regular_groups().map(|group| group.max_points).sum(),
         )
     }
 

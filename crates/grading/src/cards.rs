@@ -61,16 +61,16 @@ impl Cards<'_> {
     /// # Errors
     ///
     /// Fails if a card can't be written.
-    pub fn store_cards(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
-        let card = self.store_card(judged)?;
-        if students >= judged.hints {
+    pub fn store_cards(&self, judged_trace: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
+        let card = self.store_card(judged_trace)?;
+        if students >= judged_trace.hints {
             return Ok((card.clone(), card));
         }
         if !self.for_students {
             return Ok((card, None));
         }
-        let explanations = limit_explanations(students, judged.explanations.to_vec());
-        Ok((card, self.store_card(&JudgedTrace { explanations: &explanations, hints: students, ..*judged })?))
+        let explanations = limit_explanations(students, judged_trace.explanations.to_vec());
+        Ok((card, self.store_card(&JudgedTrace { explanations: &explanations, hints: students, ..*judged_trace })?))
     }
 
     fn store_card(&self, judged: &JudgedTrace<'_>) -> io::Result<Option<String>> {

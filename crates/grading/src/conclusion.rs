@@ -54,7 +54,7 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
             memory: Some(program.peak_memory),
             ..Measurements::default()
         };
-        let kept = |stream: &fosssim_sandbox::CapturedOutput, name: &str| {
+        let format_stream = |stream: &fosssim_sandbox::CapturedOutput, name: &str| {
             let mut text = truncate(&stream.bytes, MAX_OUTPUT_BYTES);
             if stream.truncated {
                 let mebibytes = stream.bytes.len() as f64 / f64::from(1 << 20);
@@ -62,7 +62,8 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
             }
             text
         };
-        let (stdout, stderr) = (kept(&program.stdout, "standard output"), kept(&program.stderr, "standard error"));
+        let (stdout, stderr) =
+            (format_stream(&program.stdout, "standard output"), format_stream(&program.stderr, "standard error"));
         Self { ended: program.ended.clone(), measured, stdout, stderr }
     }
 }
@@ -223,17 +224,17 @@ fn trace_verdict(run: &JudgedRun<'_>) -> (Verdict, Reason) {
     }
 }
 
-fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
-    let account = judged.findings_by(rules.official());
-    if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless_step) {
+fn find_fault(outcome: &Outcome, rules: Rules) -> WrongTrace {
+    let account = outcome.findings_by(rules.official());
+    if let (Book::Parity, Some(error)) = (rules.official(), outcome.parity.endless_step) {
         return WrongTrace::NoResult(error);
     }
     match account.first_divergence {
         Some(first) if first.step == 0 && account.wrong_steps == 0 => WrongTrace::FirstRecord(first.kind()),
         Some(first) => WrongTrace::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
-        None if judged.damaged_steps > 0 => WrongTrace::Damaged,
-        None if judged.ruling(rules.official()) == Ruling::Undecided => WrongTrace::Undecided,
-        None if judged.fair.as_ref().is_some_and(|fair| fair.rejection.is_some()) => WrongTrace::Borderline,
+        None if outcome.damaged_steps > 0 => WrongTrace::Damaged,
+        None if outcome.ruling(rules.official()) == Ruling::Undecided => WrongTrace::Undecided,
+        None if outcome.fair.as_ref().is_some_and(|fair| fair.rejection.is_some()) => WrongTrace::Borderline,
         None => WrongTrace::SmallErrors,
     }
 }

@@ -19,11 +19,11 @@ pub(super) fn fault_result(
     fault: &CaughtPanic,
     trace: &[u8],
 ) -> SceneResult {
-    let kept = match save_trace(folder, task, trace) {
+    let saved_trace = match save_trace(folder, task, trace) {
         Ok(path) => SavedTrace::In(path),
         Err(error) => SavedTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
-    task.failure_result(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
+    task.failure_result(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(saved_trace) })
 }
 
 /// Writes a trace into the folder. The file's name contains the scene's name and the trace's digest.

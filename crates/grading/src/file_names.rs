@@ -23,14 +23,14 @@ pub fn to_exact(name: &OsStr) -> String {
 }
 
 fn map_chunks(name: &OsStr, text: impl Fn(&str) -> String) -> String {
-    let mut shown = String::new();
+    let mut printable = String::new();
     for chunk in name.as_bytes().utf8_chunks() {
-        shown += &text(chunk.valid());
+        printable += &text(chunk.valid());
         for byte in chunk.invalid() {
-            shown.push_str(&format!("\\x{byte:02x}"));
+            printable.push_str(&format!("\\x{byte:02x}"));
         }
     }
-    shown
+    printable
 }
 
 fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {

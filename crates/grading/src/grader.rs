@@ -222,8 +222,8 @@ impl<'a> SharedGrading<'a> {
             return;
         }
         lock(&self.stored_keys).insert(key.clone());
-        let kept = catch_panic(|| results.store(key, &submission.name, result));
-        if let Err(error) = kept.unwrap_or_else(|fault| Err(StoreError(fault.to_string()))) {
+        let store_outcome = catch_panic(|| results.store(key, &submission.name, result));
+        if let Err(error) = store_outcome.unwrap_or_else(|fault| Err(StoreError(fault.to_string()))) {
             let _ = self.storage_error.set(error);
             self.cancellation.cancel();
         }

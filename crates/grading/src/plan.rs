@@ -80,8 +80,8 @@ impl Plan {
     /// Returns the points that the suite is worth, without extra points.
     pub fn max_points(&self) -> f64 {
         let speed_points = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
-        let counted = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.is_extra);
-        counted.map(|marking| marking.points + speed_points(marking)).sum()
+        let markings = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.is_extra);
+        markings.map(|marking| marking.points + speed_points(marking)).sum()
     }
 }
 

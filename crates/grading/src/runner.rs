@@ -107,11 +107,11 @@ impl Runner<'_> {
         let (trace, trace_bytes) = self.open_trace(&left)?;
         // The trace is kept outside of the code that judges it. If that code panics, the trace can still be saved for
         // developers.
-        let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
+        let mut kept_trace = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
         let mut reporter = StepReporter(on_step);
         let observer = &mut ObserverPair(&mut rulings, &mut reporter);
-        let judged = self.judge_trace(program, task, &mut kept, trace, observer);
+        let judge_result = self.judge_trace(program, task, &mut kept_trace, trace, observer);
         watch.end_part(RunPart::Judging);
         drop(left);
         match is_untouched {
@@ -119,49 +119,50 @@ impl Runner<'_> {
             false => drop(folder),
         }
         watch.end_part(RunPart::CleanUp);
-        let failed = |stage, fault: &_| failed_scene::fault_result(task, self.fault_folder, stage, fault, kept.bytes());
-        let judged = match judged {
-            Ok(judged) => judged?,
+        let failed =
+            |stage, fault: &_| failed_scene::fault_result(task, self.fault_folder, stage, fault, kept_trace.bytes());
+        let judge_result = match judge_result {
+            Ok(judge_result) => judge_result?,
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
         let run = JudgedRun {
             task,
             program: &ProgramRun::from(&outcome),
-            outcome: &judged,
+            outcome: &judge_result,
             trace_bytes,
             rules: self.rules,
             hints: self.hints,
             limits: self.limits,
         };
-        let mut result = match explain_run(&run, &kept, &program.program) {
+        let mut result = match explain_run(&run, &kept_trace, &program.program) {
             Ok(result) => result,
             Err((activity, fault)) => return Ok(failed(activity, &fault)),
         };
         watch.end_part(RunPart::Explaining);
         result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
-            && !kept.bytes().is_empty()
+            && !kept_trace.bytes().is_empty()
             && !(result.verdict.is_accepted() && result.difference_cause.is_none())
         {
-            let judged = JudgedTrace {
+            let judge_result = JudgedTrace {
                 scene: &task.scene,
                 name: &task.address(),
                 explanations: &result.explanations,
-                outcome: &judged,
-                rulings: &rulings.into_steps(&judged),
-                trace: kept.bytes(),
-                is_cut: trace_bytes > kept.bytes().len() as u64,
+                outcome: &judge_result,
+                rulings: &rulings.into_steps(&judge_result),
+                trace: kept_trace.bytes(),
+                is_cut: trace_bytes > kept_trace.bytes().len() as u64,
                 rules: self.rules,
                 hints: self.hints,
             };
-            let drawn = catch_panic(|| cards.store_cards(&judged, self.student_hints));
+            let drawn = catch_panic(|| cards.store_cards(&judge_result, self.student_hints));
             (result.card, result.card_for_students) = match drawn {
                 Ok(names) => names.map_err(|error| format!("the data of a page can't be stored: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
         if let Some(location) = self.trace_location.filter(|_| !result.verdict.is_accepted()) {
-            location.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
+            location.write(kept_trace.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
         }
         watch.end_part(RunPart::Drawing);
         Ok(result)
@@ -225,16 +226,16 @@ impl Runner<'_> {
         &self,
         program: &StagedProgram,
         task: &SceneTask,
-        kept: &mut KeptTrace,
+        kept_trace: &mut KeptTrace,
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, CaughtPanic> {
         let judged = catch_panic(|| {
             failed_scene::inject_panic(Activity::Judging, &program.program);
-            self.judge(task, kept, &mut trace, watch)
+            self.judge(task, kept_trace, &mut trace, watch)
         });
         // The judge has already reported read errors.
-        let _ = io::copy(&mut kept.keep_from(trace), &mut io::sink());
+        let _ = io::copy(&mut kept_trace.keep_from(trace), &mut io::sink());
         judged
     }
 

@@ -141,7 +141,7 @@ impl Shrinker<'_> {
                 continue;
             };
             let steps = self.limits.step.map_or_else(|| list_wrong_steps(&task.scene, &observed), |step| vec![step]);
-            let (mut runs, mut fault, mut held) = (0, Ok(()), None);
+            let (mut runs, mut fault, mut last_observation) = (0, Ok(()), None);
             let mut is_reproduced = |scene: &Scene, is_only_reason: bool| {
                 if runs == self.limits.runs || is_over(spent) {
                     return None;
@@ -150,12 +150,12 @@ impl Shrinker<'_> {
                 let observed = self.observe(scene, &mut spent).map_err(|error| fault = Err(error)).ok();
                 let observed = observed.filter(|_| !self.runner.cancellation.is_canceled())?;
                 let is_reproduced = reason.is_reproduced(scene, &observed, is_only_reason);
-                held = if is_reproduced { Some(observed) } else { held.take() };
+                last_observation = if is_reproduced { Some(observed) } else { last_observation.take() };
                 Some(is_reproduced)
             };
             let small = reduce(&step_starts(&task.scene, &observed.trace, &steps), self.assignment, &mut is_reproduced);
             fault?;
-            if let Some((small, observed)) = small.zip(held) {
+            if let Some((small, observed)) = small.zip(last_observation) {
                 return Ok(Some(ShrunkScene {
                     reason,
                     origin: task.name.clone(),

@@ -59,8 +59,8 @@ pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 impl Folders {
     /// Returns a [kept](Self::keep_folder) folder, which contains only files of the grader, or a new one.
     pub(super) fn take_folder(&self) -> io::Result<TemporaryFolder> {
-        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        kept.map_or_else(|| TemporaryFolder::create("run"), Ok)
+        let kept_folder = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
+        kept_folder.map_or_else(|| TemporaryFolder::create("run"), Ok)
     }
 
     /// Keeps a folder that only the grader has changed, for further runs.
@@ -98,8 +98,8 @@ impl GraderFolder {
             let lock_file = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
                 // Another grader's sweep may have removed the folder before it was locked.
-                let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
-                if (held.dev(), held.ino()) == (there.dev(), there.ino()) {
+                let (locked_file, current_file) = (file.metadata()?, fs::metadata(&lock)?);
+                if (locked_file.dev(), locked_file.ino()) == (current_file.dev(), current_file.ino()) {
                     Ok(file)
                 } else {
                     Err(io::ErrorKind::NotFound.into())

@@ -30,8 +30,8 @@ pub fn judge_trace<'a, R: Read + Send>(
         ..Options::default()
     };
     let bytes = AtomicU64::new(0);
-    let counted = CountedReader { inner: trace, bytes: &bytes };
-    let examined = examine(&task.scene, counted, KeptPart::All, &options, progress);
+    let counting_reader = CountedReader { inner: trace, bytes: &bytes };
+    let examined = examine(&task.scene, counting_reader, KeptPart::All, &options, progress);
     let run = JudgedRun {
         task,
         program: &ProgramRun::without_program(),

@@ -22,7 +22,7 @@ impl KeptTrace {
 
     /// Returns a reader of the trace that keeps what it reads.
     pub fn keep_from<R>(&mut self, trace: R) -> KeepingReader<'_, R> {
-        KeepingReader { kept: self, inner: trace }
+        KeepingReader { trace: self, inner: trace }
     }
 
     /// Returns the kept bytes.
@@ -39,17 +39,17 @@ impl KeptTrace {
 /// A reader that keeps the bytes of the trace.
 #[derive(Debug)]
 pub struct KeepingReader<'k, R> {
-    kept: &'k mut KeptTrace,
+    trace: &'k mut KeptTrace,
     inner: R,
 }
 
 impl<R: Read> Read for KeepingReader<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        let room = self.kept.max_bytes - self.kept.bytes.len();
-        self.kept.bytes.extend_from_slice(&buffer[..count.min(room)]);
-        self.kept.is_cut |= count > room;
-        self.kept.has_ended |= count == 0 && !buffer.is_empty();
+        let room = self.trace.max_bytes - self.trace.bytes.len();
+        self.trace.bytes.extend_from_slice(&buffer[..count.min(room)]);
+        self.trace.is_cut |= count > room;
+        self.trace.has_ended |= count == 0 && !buffer.is_empty();
         Ok(count)
     }
 }

@@ -415,12 +415,12 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         } else if has_judged && slot.is_extraordinary {
             let judgment = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgment));
             let identical = slot.result.is_identical;
-            let (mut judged, mut work) = reach.judge(context, records, identical, judgment, budget.remaining());
+            let (mut step_judgment, mut work) = reach.judge(context, records, identical, judgment, budget.remaining());
             if work > budget.remaining() && budget.extend() {
-                (judged, work) = reach.judge(context, records, identical, None, budget.remaining());
+                (step_judgment, work) = reach.judge(context, records, identical, None, budget.remaining());
             }
             has_judged = budget.spend(work);
-            slot.fair_judgment = judged;
+            slot.fair_judgment = step_judgment;
         }
         if has_judged {
             judging.add(&slot.fair_judgment);

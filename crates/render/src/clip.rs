@@ -48,21 +48,22 @@ impl ClipRectangle {
     pub fn clip_half_plane(&self, inside: impl Fn(Point) -> f64) -> Vec<Point> {
         let ([left, top], [right, bottom]) = (self.low, self.high);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-        let mut kept = Vec::new();
+        let mut polygon = Vec::new();
         for (k, &corner) in corners.iter().enumerate() {
             let next = corners[(k + 1) % 4];
             let (here, there) = (inside(corner), inside(next));
             if here >= 0.0 {
-                kept.push(corner);
+                polygon.push(corner);
             }
             if (here < 0.0) != (there < 0.0) {
                 let share = here / (here - there);
                 if share.is_finite() {
-                    kept.push([corner[0] + share * (next[0] - corner[0]), corner[1] + share * (next[1] - corner[1])]);
+                    polygon
+                        .push([corner[0] + share * (next[0] - corner[0]), corner[1] + share * (next[1] - corner[1])]);
                 }
             }
         }
-        kept
+        polygon
     }
 }
 

@@ -123,11 +123,11 @@ impl Format {
             (_, Audience::Staff) => Cow::Borrowed(grade),
             (_, Audience::Student) if platform_hides => disclosed_grade(grade),
             (_, Audience::Student) => {
-                let mut shown = immediate_grade(grade);
-                if shown.groups.len() < grade.groups.len() {
-                    shown.to_mut().warnings.push(HIDDEN_GROUPS_WARNING.to_owned());
+                let mut visible_grade = immediate_grade(grade);
+                if visible_grade.groups.len() < grade.groups.len() {
+                    visible_grade.to_mut().warnings.push(HIDDEN_GROUPS_WARNING.to_owned());
                 }
-                shown
+                visible_grade
             }
         }
     }

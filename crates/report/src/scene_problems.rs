@@ -18,8 +18,8 @@ pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
     for problem in &refused.list {
         text += &format!("\n{}", render_problem(name, source, problem));
     }
-    if refused.omitted > 0 {
-        text += &format!("\nand {} more\n", refused.omitted);
+    if refused.omitted_count > 0 {
+        text += &format!("\nand {} more\n", refused.omitted_count);
     }
     text
 }

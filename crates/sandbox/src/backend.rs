@@ -114,11 +114,11 @@ impl Supervisor {
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
         let child = self.build_command(MODE_PROBE).spawn().map_err(|source| self.start_error(source))?;
         let output = child.wait_with_output();
-        let lost = |how: String| SandboxError::Lost { how };
-        let output = output.map_err(|error| lost(error.to_string()))?;
+        let error_from = |how: String| SandboxError::Lost { how };
+        let output = output.map_err(|error| error_from(error.to_string()))?;
         wire::receive(&output.stdout[..]).map_err(|_| {
             let text = String::from_utf8_lossy(&output.stderr).trim().to_string();
-            lost(format!("the probe ended with {}: {text}", output.status))
+            error_from(format!("the probe ended with {}: {text}", output.status))
         })
     }
 }
@@ -296,13 +296,13 @@ impl Backend {
             write_files(job)?;
         }
         let (mut spawned, first) = loop {
-            let (mut spawned, kept) = match Keeping::from_order(&order) {
+            let (mut spawned, is_from_keeper) = match Keeping::from_order(&order) {
                 Some(kind) => supervisor.request_from_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match spawned.receive_first() {
                 // The keeper ended, because it received no order for a while.
-                Err(_) if kept => spawned.host.kill(),
+                Err(_) if is_from_keeper => spawned.host.kill(),
                 first => break (spawned, first),
             }
         };

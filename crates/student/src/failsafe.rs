@@ -151,12 +151,13 @@ impl<'a> RigidBody<'a> {
         for (number, particle) in zone_particles(self.world, zone).into_iter().enumerate() {
             let mass = self.mass(number, particle);
             let start = vector_at(self.q_start, particle);
-            let moved = vector_at(&state.x, particle) - start;
-            let position = if self.mistake() == Some(Mistake::FailsafeCenterAtEnd) { start + moved } else { start };
+            let displacement = vector_at(&state.x, particle) - start;
+            let position =
+                if self.mistake() == Some(Mistake::FailsafeCenterAtEnd) { start + displacement } else { start };
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match self.mistake() {
                 Some(Mistake::FailsafeMomentumVelocity) => vector_at(&state.v, particle),
-                _ => moved,
+                _ => displacement,
             };
             self.center = student.add_scaled(self.center, weight(Mistake::FailsafeCenterUnweighted), position);
             self.shift = student.add_scaled(self.shift, weight(Mistake::FailsafeMomentumUnweighted), motion);

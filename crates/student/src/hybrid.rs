@@ -59,7 +59,7 @@ fn respond_geometrically(
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
     }
-    let mut moved: Vec<Zone> = Vec::new();
+    let mut moved_zones: Vec<Zone> = Vec::new();
     loop {
         if student.makes(Mistake::GeometricCapped) && i64::from(round) >= i64::from(max_iterations) {
             return Ok(());
@@ -69,12 +69,12 @@ fn respond_geometrically(
         }
         let mut chosen = zones.clone();
         if student.makes(Mistake::GeometricNewZonesOnly) {
-            chosen.retain(|zone| !moved.contains(zone));
+            chosen.retain(|zone| !moved_zones.contains(zone));
         } else if student.makes(Mistake::GeometricGrownStay) {
-            chosen.retain(|zone| moved.iter().all(|other| other.particles.is_disjoint(&zone.particles)));
+            chosen.retain(|zone| moved_zones.iter().all(|other| other.particles.is_disjoint(&zone.particles)));
         }
         move_zones(world, q_start, &chosen, state);
-        moved.clone_from(&zones);
+        moved_zones.clone_from(&zones);
         round += 1;
         if student.makes(Mistake::GeometricOneRound) {
             return Ok(());

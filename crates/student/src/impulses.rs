@@ -211,8 +211,8 @@ fn limit_velocity_changes(world: &World, before: &State, state: &mut State) {
         if length(change) > MAX_IMPULSE {
             let share = MAX_IMPULSE / length(change);
             set_vector(&mut state.v, particle, vector_at(&before.v, particle) + share * change);
-            let moved = vector_at(&state.x, particle) - vector_at(&before.x, particle);
-            set_vector(&mut state.x, particle, vector_at(&before.x, particle) + share * moved);
+            let displacement = vector_at(&state.x, particle) - vector_at(&before.x, particle);
+            set_vector(&mut state.x, particle, vector_at(&before.x, particle) + share * displacement);
         }
     }
 }

@@ -36,8 +36,8 @@ impl FurtherCommands<'_> {
         if !has_one_scene || !hints.is_empty() {
             lines.push(format!("$ {} --scene {}{hints}", self.grade_command(submission), quote(&scene.scene)));
         }
-        let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
-        if let (Some(trace), Some(name)) = (kept, self.scene_argument(&scene.scene)) {
+        let kept_trace = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
+        if let (Some(trace), Some(name)) = (kept_trace, self.scene_argument(&scene.scene)) {
             lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();

@@ -219,7 +219,7 @@ impl GradingSession<'_> {
     /// Grades the submissions. Also returns the error that stopped the grading or the storing of results, if there was
     /// one.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
-        let kept = match &self.folder {
+        let folder_results = match &self.folder {
             Some(folder) => {
                 Folder::create(folder).with_context(|| format!("cannot create the folder {}", folder.display()))?;
                 Some(FolderResults::open(folder, fresh)?)
@@ -284,7 +284,7 @@ impl GradingSession<'_> {
                 counter.count_event(&event);
             }
         };
-        let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
+        let results = folder_results.as_ref().map(|results| results as &dyn crate::suite::results::Results);
         let BatchResult { mut grades, fault } =
             batch::grade_all(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);

@@ -61,13 +61,13 @@ pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDe
 pub(super) fn render_text(
     grades: &[Grade],
     skipped_entries: &[SkippedEntry],
-    shown: TextDetail,
+    detail: TextDetail,
     max_hardest: usize,
     closer: Option<Advice<'_>>,
 ) -> String {
     let (style, width) = (console::style(), console::width());
-    let mut text = Text { style, detail: shown, width, advice: closer }.render(grades);
-    if grades.len() > 1 && shown > TextDetail::Line {
+    let mut text = Text { style, detail, width, advice: closer }.render(grades);
+    if grades.len() > 1 && detail > TextDetail::Line {
         text += "\n";
         text += &grade::render_class(grades, max_hardest, style);
     }

@@ -147,15 +147,16 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     // If this process is root, programs run as another user. That user must be able to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
-    let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
-    let table = selftest::run_selected(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
-        done += 1;
-        if let selftest::PromiseState::Broken(how) = &promise.state {
-            console::print_error(format!("broken: {}: {how}\n", promise.attack));
-        } else if done % 20 == 0 {
-            console::print_error(format!("{done} attacks so far\n"));
-        }
-    })?;
+    let is_chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
+    let table =
+        selftest::run_selected(&backend, Path::new(&arguments.compiler), folder.path(), is_chosen, |promise| {
+            done += 1;
+            if let selftest::PromiseState::Broken(how) = &promise.state {
+                console::print_error(format!("broken: {}: {how}\n", promise.attack));
+            } else if done % 20 == 0 {
+                console::print_error(format!("{done} attacks so far\n"));
+            }
+        })?;
     let mut text = String::new();
     for promise in &table.promises {
         let (state, note) = match &promise.state {
@@ -166,9 +167,9 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         let _ = writeln!(text, "{state:<11} {:<28} {}{note}", promise.attack, promise.promise);
     }
     let broken = table.broken_promises().count();
-    let kept = format_count(table.count_kept() as u64, "promise");
+    let kept_promises = format_count(table.count_kept() as u64, "promise");
     let untested = table.promises.len() - table.count_kept() - broken;
-    let _ = writeln!(text, "\n{kept} kept, {broken} broken, {untested} not tested here");
+    let _ = writeln!(text, "\n{kept_promises} kept, {broken} broken, {untested} not tested here");
     console::report(&text)?;
     Ok(if broken == 0 && table.count_kept() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

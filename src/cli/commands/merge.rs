@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     reject_several(&reports, names.len(), "")?;
     Folder::create(&output).with_context(|| format!("cannot create the folder {}", output.display()))?;
     // The lock is held until the end, so that no other process uses the folder.
-    let kept = FolderResults::open(&output, true)?;
+    let merged_results = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
             let source = FilePlace::new(folder, name);
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
                 }
             }
         }
-        keep_results(folder, &kept)?;
+        keep_results(folder, &merged_results)?;
     }
     let (suite, skipped) = (first.common.suite.clone(), first.skipped_entries.clone());
     let order = names.clone();
@@ -160,7 +160,7 @@ fn require_complete<'a>(
 }
 
 /// Stores the results of a shard in the merged folder. A later grading without shards then finds them.
-fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
+fn keep_results(folder: &Path, merged_results: &FolderResults) -> Result<()> {
     let place = FilePlace::new(folder, JOURNAL_NAME);
     let (file, length) = match place.open_file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
@@ -171,7 +171,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
         // A damaged entry is skipped, so a later grading runs its scene again.
         if let Some(entry) = read_line(line) {
-            kept.store(&entry.key, &entry.submission, &entry.result)?;
+            merged_results.store(&entry.key, &entry.submission, &entry.result)?;
         }
         Ok(())
     })

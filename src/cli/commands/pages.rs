@@ -121,27 +121,27 @@ const RECORDING_NOTE: &str = "The verdict compares with the recording, where nea
 
 /// Draws the card of a graded scene. If the trace was compared with a recording, each step is judged again for the
 /// card, from the trace's own state. Returns `None` if the hints show only the verdict, or if this judgment fails.
-pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
-    if judged.hints == Hints::None {
+pub(super) fn draw_card(judged_trace: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
+    if judged_trace.hints == Hints::None {
         return None;
     }
     if recorded {
         let examined = catch_panic(|| {
             let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
-            examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
+            examine(judged_trace.scene, judged_trace.trace, KeptPart::Nothing, &options, &mut ())
         });
         // A failure while drawing must not cost points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = examined else { return None };
-        let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
+        let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged_trace };
         return draw_card(&own, false)
             .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(RECORDING_NOTE).to_stored()));
     }
     // A failure while drawing must not cost points.
-    let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
+    let card = catch_panic(|| card(judged_trace, None, 3)).unwrap_or_else(|fault| {
         Some(Card::from_text(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
     let cut = "The trace is longer than the part that the grader keeps, so the pictures end early.";
-    card.map(|card| if judged.is_cut { card.with_remark(cut) } else { card }.to_stored())
+    card.map(|card| if judged_trace.is_cut { card.with_remark(cut) } else { card }.to_stored())
 }
 
 /// Draws the card of a judged trace. `trace_name` is the name by which the reader can use the trace, and `depth` is the

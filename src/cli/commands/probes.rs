@@ -222,7 +222,7 @@ pub(super) fn judge_case(
     let explanations = limit_explanations(hints, explanations);
     let has_card = has_pictures && !accepted;
     let card = has_card.then(|| {
-        let judged = JudgedTrace {
+        let judged_trace = JudgedTrace {
             scene,
             name: &name,
             explanations: &explanations,
@@ -233,7 +233,7 @@ pub(super) fn judge_case(
             rules: Rules::Fair,
             hints,
         };
-        pages::card(&judged, has_trace.then_some(trace.as_str()), 2)
+        pages::card(&judged_trace, has_trace.then_some(trace.as_str()), 2)
     });
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }

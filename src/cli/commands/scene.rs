@@ -54,13 +54,13 @@ fn show(name: &str) -> Result<()> {
 
 fn export(arguments: &SceneExportArguments) -> Result<()> {
     let names = matching_names(&arguments.patterns)?;
-    let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
+    let (mut written, mut unchanged, mut conflicts) = (0_u64, 0_u64, Vec::new());
     for name in names {
         let xml = library::find_scene(name).context("a scene that was just listed")?;
         let place = FilePlace::new(&arguments.output, format!("{name}.xml"));
         match has_contents(&place, xml) {
-            Some(true) => kept += 1,
-            Some(false) if !arguments.force => other.push(place.path()),
+            Some(true) => unchanged += 1,
+            Some(false) if !arguments.force => conflicts.push(place.path()),
             _ => {
                 output::write_below(&place, xml)?;
                 written += 1;
@@ -68,12 +68,14 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
         }
     }
     if !arguments.quiet {
-        let rest = if kept > 0 { format!(", {} there already", format_count(kept, "scene")) } else { String::new() };
+        let rest =
+            if unchanged > 0 { format!(", {} there already", format_count(unchanged, "scene")) } else { String::new() };
         let folder = arguments.output.display();
         console::report(&format!("{} written to {folder}{rest}\n", format_count(written, "scene")))?;
     }
-    if let Some(first) = other.first() {
-        let others_note = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
+    if let Some(first) = conflicts.first() {
+        let others_note =
+            if conflicts.len() > 1 { format!(" and {} more", conflicts.len() - 1) } else { String::new() };
         bail!("{}{others_note}: not overwritten, because the content differs; --force overwrites", first.display());
     }
     Ok(())

@@ -264,17 +264,17 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     for name in &own {
         *counts_by_printable.entry(file_names::to_printable(name)).or_default().entry(name).or_default() += 1;
     }
-    let mut taken = BTreeSet::new();
+    let mut used_names = BTreeSet::new();
     let mut name = |(path, own): (&&Path, &OsString)| {
-        let shown = file_names::to_printable(own);
-        let plain = match &counts_by_printable[&shown] {
+        let printable_name = file_names::to_printable(own);
+        let plain = match &counts_by_printable[&printable_name] {
             same if same[own.as_os_str()] > 1 => file_names::to_printable(find_unique_end(path, paths).as_os_str()),
             same if same.len() > 1 => file_names::to_exact(own),
-            _ => shown,
+            _ => printable_name,
         };
         let mut name = plain.clone();
         let mut number = 1;
-        while !taken.insert(name.clone()) {
+        while !used_names.insert(name.clone()) {
             number += 1;
             name = format!("{plain} ({number})");
         }

@@ -79,8 +79,9 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
     // With any number of threads, the results are in the order of the plan.
     let opened = Folder::open(folder);
-    let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
-    let (results, warnings): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
+    let judged_scenes: Vec<JudgedScene> =
+        tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
+    let (results, warnings): (Vec<_>, Vec<_>) = judged_scenes.into_iter().unzip();
     traces::grade(plan, submission, results, warnings.into_iter().flatten().collect())
 }
 

@@ -27,7 +27,7 @@ pub(in crate::cli) struct SceneInput {
 ///
 /// Fails if the scene can't be read or has errors. The message lists all errors with their positions.
 pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
-    let shown = printable_name(name);
+    let display_name = printable_name(name);
     if name == Path::new("-") {
         bail!("a scene is read from a file; only a trace may come from standard input");
     }
@@ -36,20 +36,20 @@ pub(in crate::cli) fn read_scene(name: &Path) -> Result<SceneInput> {
             let scene = library::find_scene(asset).with_context(|| describe_missing_asset("scene", asset))?;
             (scene.to_vec(), None)
         }
-        None => read_scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
+        None => read_scene_file(name).with_context(|| format!("cannot read the scene {display_name}"))?,
     };
     if is_binary(&bytes) {
-        bail!("{shown} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE");
+        bail!("{display_name} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE");
     }
-    match scene::read(&shown, &bytes) {
+    match scene::read(&display_name, &bytes) {
         Ok(LoadedScene { scene, warnings, .. }) => {
             // Warnings about embedded scenes would not help the user.
             if identity.is_some() {
-                console::print_remark(scene_problems::render_warnings(&shown, &bytes, &warnings));
+                console::print_remark(scene_problems::render_warnings(&display_name, &bytes, &warnings));
             }
-            Ok(SceneInput { name: shown, scene, identity })
+            Ok(SceneInput { name: display_name, scene, identity })
         }
-        Err(errors) => bail!("{}", scene_problems::render_errors(&shown, &bytes, &errors)),
+        Err(errors) => bail!("{}", scene_problems::render_errors(&display_name, &bytes, &errors)),
     }
 }
 

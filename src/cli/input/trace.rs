@@ -74,7 +74,7 @@ impl Failure {
 ///
 /// Fails if the trace can't be opened. Damage is detected only when the trace is read.
 pub(in crate::cli) fn open_trace(name: &Path) -> Result<TraceInput> {
-    let shown = printable_name(name);
+    let display_name = printable_name(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
     let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED_TRACE.0);
@@ -90,9 +90,9 @@ pub(in crate::cli) fn open_trace(name: &Path) -> Result<TraceInput> {
         // If the user names a scene instead of a trace, that is a mistake of the user, and not a wrong trace. It is
         // rejected if both the name and the content show it.
         if is_scene(name) {
-            bail!("{shown} is a scene, not a trace: SCENE comes first, then TRACE");
+            bail!("{display_name} is a scene, not a trace: SCENE comes first, then TRACE");
         }
-        let context = || format!("cannot read the trace {shown}");
+        let context = || format!("cannot read the trace {display_name}");
         let (file, metadata) = open(name).with_context(context)?;
         let file = with_timeout(file, &metadata).with_context(context)?;
         let reader = open_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
@@ -103,7 +103,7 @@ pub(in crate::cli) fn open_trace(name: &Path) -> Result<TraceInput> {
     let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { detect_file_kind(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
-    Ok(TraceInput { name: shown, reader, identity, probable_kind: looks_like, failure })
+    Ok(TraceInput { name: display_name, reader, identity, probable_kind: looks_like, failure })
 }
 
 /// Returns whether a file is a scene, according to its name and its first bytes.

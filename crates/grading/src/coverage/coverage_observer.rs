@@ -120,7 +120,7 @@ impl<'a> CoverageObserver<'a> {
             3 => Size::Three,
             _ => Size::More,
         };
-        let held = match (particles.iter().any(|&particle| scene.particles[particle].fixed), half_plane) {
+        let anchor = match (particles.iter().any(|&particle| scene.particles[particle].fixed), half_plane) {
             (false, false) => ZoneAnchor::Nothing,
             (true, false) => ZoneAnchor::Fixed,
             (false, true) => ZoneAnchor::HalfPlane,
@@ -130,7 +130,7 @@ impl<'a> CoverageObserver<'a> {
         let links = if contacts().count() > 1 { Links::Several } else { Links::One };
         let zone = MovedZone {
             size,
-            held,
+            held: anchor,
             motion: events::classify_zone_motion(scene, particles, &self.step.q_start, &self.step.q_end),
             age,
             position,

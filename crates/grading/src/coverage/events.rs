@@ -205,8 +205,8 @@ pub(super) fn find_miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> No
 /// the same as in collisions.md 5, so a zone that does not rotate has an angular momentum of exactly zero.
 pub(super) fn classify_zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
-    let moved = |particle| vector_at(q_end, particle) - vector_at(q_start, particle);
-    if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {
+    let displacement = |particle| vector_at(q_end, particle) - vector_at(q_start, particle);
+    if particles.iter().all(|&particle| displacement(particle) == Vec2::zeros()) {
         return Motion::Rests;
     }
     let total: f64 = particles.iter().map(|&particle| mass(particle)).sum();
@@ -214,9 +214,9 @@ pub(super) fn classify_zone_motion(scene: &Scene, particles: &[usize], q_start: 
         let sum = particles.iter().fold(Vec2::zeros(), |sum, &particle| sum + mass(particle) * value(particle));
         divide(sum, total)
     };
-    let (center, shift) = (mean(&|particle| vector_at(q_start, particle)), mean(&moved));
+    let (center, shift) = (mean(&|particle| vector_at(q_start, particle)), mean(&displacement));
     let momentum = particles.iter().fold(0.0, |momentum, &particle| {
-        let (arm, relative) = (vector_at(q_start, particle) - center, moved(particle) - shift);
+        let (arm, relative) = (vector_at(q_start, particle) - center, displacement(particle) - shift);
         momentum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
     });
     if particles.len() == 1 || momentum == 0.0 { Motion::Shifts } else { Motion::Turns }

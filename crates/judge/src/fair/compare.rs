@@ -140,18 +140,19 @@ impl Similarity {
 
 /// Compares like [`compare`], but without bounds of the coefficients. Returns `None` if the comparison needs them.
 fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
-    let lost = expected.iter().take_while(|r| r.value.abs() < MIN_LEADING_COEFFICIENT).count();
-    let kept = &expected[lost..];
-    if kept.len() != actual.len() {
+    let dropped_count = expected.iter().take_while(|r| r.value.abs() < MIN_LEADING_COEFFICIENT).count();
+    let kept_coefficients = &expected[dropped_count..];
+    if kept_coefficients.len() != actual.len() {
         return None;
     }
-    if kept.is_empty() {
+    if kept_coefficients.is_empty() {
         return Some(Match { scale: None, tolerance_share: 0.0 });
     }
     let mut values = [0.0; MAX_COEFFICIENTS];
-    values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
-    let similarity = Similarity::measure(values.get(..kept.len())?, actual);
-    let is_right = similarity.is_clear(lost == 0) && bound_sum(expected).is_finite() && !is_round_off(expected);
+    values.iter_mut().zip(kept_coefficients).for_each(|(value, own)| *value = own.value);
+    let similarity = Similarity::measure(values.get(..kept_coefficients.len())?, actual);
+    let is_right =
+        similarity.is_clear(dropped_count == 0) && bound_sum(expected).is_finite() && !is_round_off(expected);
     is_right.then(|| similarity.as_match())
 }
 
@@ -368,14 +369,16 @@ fn bound_sum(right: &[BoundedValue]) -> f64 {
 /// has no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
-    let (dropped, held) = expected.split_at(missing);
-    if held.iter().any(is_significant) {
+    let (dropped_coefficients, kept_coefficients) = expected.split_at(missing);
+    if kept_coefficients.iter().any(is_significant) {
         return None;
     }
-    let needed =
-        held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (DOUBLE_TOLERANCE * r.bound) });
+    let needed = kept_coefficients
+        .iter()
+        .zip(actual)
+        .map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (DOUBLE_TOLERANCE * r.bound) });
     let min_factor = needed.fold(0.0, |maximum: f64, factor| if factor <= maximum { maximum } else { factor });
-    let limit = max_factor(dropped);
+    let limit = max_factor(dropped_coefficients);
     (min_factor.is_finite() && min_factor <= limit).then_some([min_factor, limit])
 }
 

@@ -90,7 +90,7 @@ pub(super) fn compare_hit(
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     own: Impulse,
     actual: &LoggedImpulse,
-    judged: &mut StepJudgment,
+    step_judgment: &mut StepJudgment,
 ) -> Option<FindingDetail> {
     if actual.time != own.time {
         let is_right_time = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, evaluate));
@@ -102,7 +102,7 @@ pub(super) fn compare_hit(
         Some((motion, _)) => normal(motion, actual.time),
         None => (own.normal, simple_tolerance(before)),
     };
-    compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
+    compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, step_judgment)
 }
 
 /// Compares a logged contact with the expected one, for a pair whose collision is uncertain, and returns the finding if

@@ -45,7 +45,7 @@ pub(super) enum PolynomialJudgment {
 
 /// Returns the comparison of a polynomial with the course's form.
 pub(super) fn compare_first(
-    judged: &StepJudgment,
+    step_judgment: &StepJudgment,
     expected: &ExpectedPolynomials,
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
@@ -54,7 +54,7 @@ pub(super) fn compare_first(
     if expected.other_form(logged.number).is_some() && is_wrong_with_every_factor(own, logged.coefficients) {
         return Err(Mismatch::TooLong);
     }
-    compare(own, logged.coefficients, &judged.likely_factors(logged.place.pair.kind, logged.number))
+    compare(own, logged.coefficients, &step_judgment.likely_factors(logged.place.pair.kind, logged.number))
 }
 
 impl StepJudgment {
@@ -224,7 +224,7 @@ pub(super) fn wrong_polynomial_finding(
 ) -> FindingDetail {
     let &LoggedPolynomial { place, coefficients: list, .. } = logged;
     let right: Vec<f64> = expected.iter().map(|c| c.value).collect();
-    let (right, shown) =
+    let (right, logged_polynomial) =
         (Polynomial::trimmed(&right), Polynomial::untrimmed(&list[..list.len().min(MAX_COEFFICIENTS)]));
     match mismatch {
         Mismatch::Coefficient { power, expected, actual, .. } => FindingDetail::Coefficient {
@@ -235,11 +235,14 @@ pub(super) fn wrong_polynomial_finding(
             residual: (actual - expected).abs(),
             rescaled: None,
             expected_polynomial: right,
-            actual_polynomial: shown,
+            actual_polynomial: logged_polynomial,
         },
-        Mismatch::TooLong => {
-            FindingDetail::PolynomialDegree { place, expected: right, actual_size: list.len(), actual: shown }
-        }
+        Mismatch::TooLong => FindingDetail::PolynomialDegree {
+            place,
+            expected: right,
+            actual_size: list.len(),
+            actual: logged_polynomial,
+        },
     }
 }
 

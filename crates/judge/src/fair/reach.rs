@@ -58,16 +58,18 @@ impl<'a> ExtraordinarySteps<'a> {
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
         let found = (!is_lost).then(|| self.find_unreachable(&records)).flatten();
         match (known_judgment, found) {
-            (Some(judged), Some(detail)) if judged.total() == 0 => (judged.with_finding(records, detail), 0),
-            (Some(judged), _) => (judged, 0),
+            (Some(step_judgment), Some(detail)) if step_judgment.total() == 0 => {
+                (step_judgment.with_finding(records, detail), 0)
+            }
+            (Some(step_judgment), _) => (step_judgment, 0),
             (None, Some(detail)) => (StepJudgment::default().with_finding(records, detail), 0),
             (None, None) => {
                 let simulation =
                     self.second_simulation.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
                 let begin = simulation.work();
                 simulation.limit_work(begin.saturating_add(max_work));
-                let judged = judge_records(context, simulation, records, identical);
-                (judged, simulation.work() - begin)
+                let step_judgment = judge_records(context, simulation, records, identical);
+                (step_judgment, simulation.work() - begin)
             }
         }
     }

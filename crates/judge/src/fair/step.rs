@@ -27,14 +27,14 @@ pub(crate) fn judge_records(
     records: Records<'_>,
     identical: bool,
 ) -> StepJudgment {
-    let mut judged = if identical {
+    let mut step_judgment = if identical {
         StepJudgment::from_identical_records(context, records.step, records.end.polynomials.len())
     } else {
         follow(context, simulation, records)
             .unwrap_or_else(|error| StepJudgment::default().with_finding(records, FindingDetail::NoResult { error }))
     };
-    compare_records(context, records, &mut judged);
-    judged
+    compare_records(context, records, &mut step_judgment);
+    step_judgment
 }
 
 /// Compares the first record with the scene.
@@ -89,9 +89,9 @@ fn follow(context: &Context<'_>, simulation: &mut Simulation, records: Records<'
 
 /// Adds findings for differences between the two records of a step that must agree (trace-format.md 2), and for logs
 /// that the course's library cannot have written.
-fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgment) {
+fn compare_records(context: &Context<'_>, records: Records<'_>, step_judgment: &mut StepJudgment) {
     let Records { step, frame, mid, end, .. } = records;
-    let mut charge = |detail| judged.add_finding(Finding { step, frame, detail });
+    let mut charge = |detail| step_judgment.add_finding(Finding { step, frame, detail });
     if is_impossible(end) || mid.is_some_and(is_impossible) {
         charge(FindingDetail::ImpossibleLog);
     }

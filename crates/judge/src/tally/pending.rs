@@ -44,11 +44,16 @@ impl PendingFindings {
     ) {
         let expected = &Polynomial::untrimmed(own);
         let finding = |detail| Finding { step, frame, detail };
-        let shown = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
+        let logged_polynomial = Polynomial::untrimmed(&actual[..actual.len().min(MAX_COEFFICIENTS)]);
         if own.len() != actual.len() {
             self.record(FindingKind::PolynomialDegree, || {
                 let (expected, actual_size) = (*expected, actual.len());
-                finding(FindingDetail::PolynomialDegree { place: place(), expected, actual_size, actual: shown })
+                finding(FindingDetail::PolynomialDegree {
+                    place: place(),
+                    expected,
+                    actual_size,
+                    actual: logged_polynomial,
+                })
             });
             return;
         }
@@ -58,7 +63,11 @@ impl PendingFindings {
         }
         if sum_own < PARITY_ZERO_COEFFICIENT_SUM {
             self.record(FindingKind::VanishingPolynomial, || {
-                finding(FindingDetail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
+                finding(FindingDetail::VanishingPolynomial {
+                    place: place(),
+                    expected: *expected,
+                    actual: logged_polynomial,
+                })
             });
             return;
         }
@@ -70,7 +79,7 @@ impl PendingFindings {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
                     let rescaled = RescaledCoefficient { power, expected: rescaled, actual: coefficient, residual };
-                    finding(describe_wrong_coefficient(place(), rescaled, expected, &shown))
+                    finding(describe_wrong_coefficient(place(), rescaled, expected, &logged_polynomial))
                 });
             }
         }

@@ -49,13 +49,14 @@ fn replace_contradicted(own: &[Explanation], likely: &[Explanation]) -> Vec<Expl
         let subjects = explanation.subjects();
         !subjects.is_empty() && unexplained.is_some_and(|all| subjects.iter().all(|subject| all.contains(subject)))
     };
-    let (contradicted, mut kept): (Vec<Explanation>, Vec<Explanation>) = own.iter().cloned().partition(is_contradicted);
+    let (contradicted, mut remaining_explanations): (Vec<Explanation>, Vec<Explanation>) =
+        own.iter().cloned().partition(is_contradicted);
     if let Some(first) = contradicted.first() {
         let subjects: BTreeSet<Subject> = contradicted.iter().flat_map(Explanation::subjects).collect();
         let all = Explanation::for_wrong_polynomials(subjects.into_iter().collect(), PolynomialEvidence::Nothing);
-        kept.insert(0, Explanation { samples: first.samples, example: first.example.clone(), ..all });
+        remaining_explanations.insert(0, Explanation { samples: first.samples, example: first.example.clone(), ..all });
     }
-    kept
+    remaining_explanations
 }
 
 /// Returns the explanation without its refuted parts, or `None` if no part is left.
@@ -80,7 +81,7 @@ fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation>
         // Each stage is checked separately, because a trace may not show all of them.
         return own.iter().filter(|explanation| likely.same_as.contains(&explanation.key)).cloned().collect();
     }
-    let shown = own.iter().find(|explanation| is_named_in(likely, std::slice::from_ref(explanation)));
+    let own_explanation = own.iter().find(|explanation| is_named_in(likely, std::slice::from_ref(explanation)));
     let as_shown = |explanation: &Explanation| {
         // Steps are counted for known mistakes, and polynomials for guesses about polynomials.
         let has_same_counts =
@@ -95,7 +96,7 @@ fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation>
         };
         Explanation { reproduced, samples, topic: about, example: explanation.example.clone(), ..likely.clone() }
     };
-    shown.map(as_shown).into_iter().collect()
+    own_explanation.map(as_shown).into_iter().collect()
 }
 
 #[cfg(test)]

@@ -98,8 +98,8 @@ pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
         if group.all_or_nothing && !group.scenes.iter().all(is_right) {
             return 0.0;
         }
-        let lost = |scene: &SceneGrade| scene.points.map_or(0.0, |points| scene.max_points - points);
-        group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost).sum()
+        let lost_points = |scene: &SceneGrade| scene.points.map_or(0.0, |points| scene.max_points - points);
+        group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost_points).sum()
     };
     // The sum of no numbers is -0.
     grade.groups.iter().filter(|group| !group.extra).map(group_points).sum::<f64>() + 0.0

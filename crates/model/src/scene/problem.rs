@@ -56,13 +56,13 @@ pub struct Problems {
     /// The problems, at least one of them an error.
     pub list: Vec<Problem>,
     /// The number of further problems that were not kept ([`MAX_PROBLEMS`]).
-    pub omitted: usize,
+    pub omitted_count: usize,
 }
 
 impl Problems {
     /// Returns a rejection of the whole text, whose position is the start of the text.
     pub(super) fn from_whole_text(source: &str, message: String, help: &str) -> Self {
-        Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).with_help(help)], omitted: 0 }
+        Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).with_help(help)], omitted_count: 0 }
     }
 }
 
@@ -73,7 +73,7 @@ impl fmt::Display for Problems {
             let separator = if number == 0 { "" } else { "\n" };
             write!(f, "{separator}{problem}")?;
         }
-        match self.omitted {
+        match self.omitted_count {
             0 => Ok(()),
             more => write!(f, "\nand {more} more"),
         }
@@ -127,7 +127,7 @@ pub(super) struct Report {
     list: Vec<Problem>,
     /// The number of kept problems of each severity.
     kept_counts: [usize; 2],
-    omitted: usize,
+    omitted_count: usize,
 }
 
 impl Report {
@@ -140,12 +140,12 @@ impl Report {
     }
 
     pub(super) fn add(&mut self, severity: Severity, problem: impl FnOnce() -> Problem) {
-        let kept = &mut self.kept_counts[severity as usize];
-        if *kept < MAX_PROBLEMS {
-            *kept += 1;
+        let kept_count = &mut self.kept_counts[severity as usize];
+        if *kept_count < MAX_PROBLEMS {
+            *kept_count += 1;
             self.list.push(Problem { severity, ..problem() });
         } else {
-            self.omitted += 1;
+            self.omitted_count += 1;
         }
     }
 
@@ -161,7 +161,7 @@ impl Report {
         for problem in &mut self.list {
             (problem.line, problem.column) = cursor.advance(text, problem.span.start);
         }
-        (self.list, self.omitted)
+        (self.list, self.omitted_count)
     }
 }
 
@@ -218,8 +218,8 @@ mod tests {
         report.add_warning(|| Problem::new(13..13, "third"));
         report.add_error(|| Problem::new(8..9, "second").with_help("do this"));
         report.add_error(|| Problem::from_element("e", &(3..4), "first"));
-        let (list, omitted) = report.finish(text);
-        let shown = Problems { source: "x".into(), list, omitted }.to_string();
+        let (list, omitted_count) = report.finish(text);
+        let shown = Problems { source: "x".into(), list, omitted_count }.to_string();
         assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");
     }
 
@@ -230,9 +230,9 @@ mod tests {
             report.add_error(|| Problem::new(0..0, "e"));
         }
         report.add_warning(|| Problem::new(0..0, "w"));
-        let (list, omitted) = report.finish(b"");
-        assert_eq!((list.len(), omitted), (MAX_PROBLEMS + 1, 3));
-        let shown = Problems { source: String::new(), list, omitted }.to_string();
+        let (list, omitted_count) = report.finish(b"");
+        assert_eq!((list.len(), omitted_count), (MAX_PROBLEMS + 1, 3));
+        let shown = Problems { source: String::new(), list, omitted_count }.to_string();
         assert!(shown.ends_with("1:1: warning: w\nand 3 more"), "{shown}");
     }
 

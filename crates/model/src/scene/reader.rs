@@ -56,10 +56,10 @@ pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
         report.add_error(|| Problem::new(0..0, "the scene is incomplete"));
     }
     let refused = report.has_errors();
-    let (list, omitted) = report.finish(text);
+    let (list, omitted_count) = report.finish(text);
     match scene {
         Some(scene) if !refused => Ok(LoadedScene { scene, warnings: list }),
-        _ => Err(Problems { source: name.to_owned(), list, omitted }),
+        _ => Err(Problems { source: name.to_owned(), list, omitted_count }),
     }
 }
 

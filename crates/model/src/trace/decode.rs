@@ -40,8 +40,8 @@ fn decode_integer(bytes: &[u8]) -> i32 {
 pub(crate) fn decode_numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
     out.clear();
     while out.len() < count {
-        let wanted = (8 * (count - out.len())).min(WINDOW_BYTES);
-        let available = source.ensure(wanted).min(wanted) / 8 * 8;
+        let byte_count = (8 * (count - out.len())).min(WINDOW_BYTES);
+        let available = source.ensure(byte_count).min(byte_count) / 8 * 8;
         if available == 0 {
             return false;
         }
@@ -115,14 +115,14 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
             Some(six) => slots.copy_from_slice(&six.map(f64::from_le_bytes)),
             None => slots.iter_mut().zip(numbers).for_each(|(slot, bytes)| *slot = f64::from_le_bytes(*bytes)),
         }
-        let mut kept = size;
+        let mut kept_size = size;
         if TRIM && size > 0 && slots[0].abs() < MIN_LEADING_COEFFICIENT {
             let list = trim(&slots[..size]);
-            kept = list.len();
-            slots.copy_within(size - kept..size, 0);
+            kept_size = list.len();
+            slots.copy_within(size - kept_size..size, 0);
             trimmed = true;
         }
-        used += kept;
+        used += kept_size;
         ends.push(used);
         at += 4 + 8 * size;
         done += 1;

@@ -52,15 +52,15 @@ impl<R: Read> Source<R> {
         &self.buffer[self.start..self.end]
     }
 
-    /// Tries to fill the buffer to at least `wanted` bytes, and returns the number present, which is smaller only at
-    /// the end.
+    /// Tries to fill the buffer to at least `byte_count` bytes, and returns the number present, which is smaller only
+    /// at the end.
     ///
     /// # Panics
-    /// Panics if `wanted` exceeds [`WINDOW_BYTES`] bytes.
-    pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
-        assert!(wanted <= WINDOW_BYTES, "the window is smaller");
-        if self.end - self.start < wanted && !self.has_ended {
-            self.fill(wanted);
+    /// Panics if `byte_count` exceeds [`WINDOW_BYTES`] bytes.
+    pub(crate) fn ensure(&mut self, byte_count: usize) -> usize {
+        assert!(byte_count <= WINDOW_BYTES, "the window is smaller");
+        if self.end - self.start < byte_count && !self.has_ended {
+            self.fill(byte_count);
         }
         self.end - self.start
     }

@@ -57,9 +57,9 @@ fn scale_subnormal(power: f64, more: f64) -> f64 {
     if value >= 1.0 {
         return value;
     }
-    let lost = power - value + change;
+    let round_off = power - value + change;
     let sum = 1.0 + value;
-    let rest = 1.0 - sum + value + lost;
+    let rest = 1.0 - sum + value + round_off;
     let rounded = (sum + rest) - 1.0;
     if rounded == 0.0 { 0.0 } else { rounded }
 }

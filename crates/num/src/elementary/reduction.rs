@@ -106,11 +106,11 @@ fn count_quarters(half: f64) -> Quarters {
         *digit -= rounded;
     }
     let sum = digits.iter().rev().fold(0.0, |sum, digit| sum + digit);
-    let lost = digits[1..].iter().fold(digits[0] - sum, |lost, digit| lost + digit);
+    let round_off = digits[1..].iter().fold(digits[0] - sum, |round_off, digit| round_off + digit);
     let rounded = (sum + ROUNDING_SHIFT) - ROUNDING_SHIFT;
     whole += rounded;
     let left = sum - rounded;
-    let part = left + lost;
+    let part = left + round_off;
     whole -= (whole + TURN_ROUNDING_SHIFT) - TURN_ROUNDING_SHIFT;
-    Quarters { whole, part, rest: (left - part) + lost }
+    Quarters { whole, part, rest: (left - part) + round_off }
 }

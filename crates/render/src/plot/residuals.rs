@@ -110,9 +110,9 @@ struct Scale {
 impl Scale {
     fn from_plot(plot: &ResidualPlot<'_>) -> Self {
         let values = plot.series.iter().flat_map(|series| series.values).copied().chain([plot.tolerance]);
-        let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
-        let (minimum, maximum) =
-            shown.fold((f64::INFINITY, 0.0_f64), |(minimum, maximum), value| (minimum.min(value), maximum.max(value)));
+        let magnitudes = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
+        let (minimum, maximum) = magnitudes
+            .fold((f64::INFINITY, 0.0_f64), |(minimum, maximum), value| (minimum.min(value), maximum.max(value)));
         let (low, high) = if maximum > 0.0 { decade_range(minimum, maximum) } else { (-16, 0) };
         Self { low, high }
     }

@@ -52,9 +52,9 @@ pub struct WrongSteps {
 }
 
 impl WrongSteps {
-    /// Creates an empty collection that keeps the steps selected by `shown`.
-    pub fn new(shown: StepChoice) -> Self {
-        Self { shown_steps: shown, ..Self::default() }
+    /// Creates an empty collection that keeps the steps selected by `choice`.
+    pub fn new(choice: StepChoice) -> Self {
+        Self { shown_steps: choice, ..Self::default() }
     }
 
     /// Returns the wrong steps by a rule book, including findings that can be made only at the end of the trace.
@@ -100,7 +100,7 @@ impl Steps {
         if !is_listed {
             return;
         }
-        let index = match self.kept_steps.binary_search_by_key(&step, |kept| kept.number) {
+        let index = match self.kept_steps.binary_search_by_key(&step, |kept_step| kept_step.number) {
             Ok(index) => index,
             Err(_) if self.kept_steps.len() >= MAX_LISTED => return,
             Err(index) => {
@@ -111,13 +111,13 @@ impl Steps {
                 index
             }
         };
-        let kept = &mut self.kept_steps[index];
+        let kept_step = &mut self.kept_steps[index];
         for first in findings.first_findings {
-            if !kept.first_findings.iter().any(|known| known.kind() == first.kind()) {
-                kept.first_findings.push(*first);
+            if !kept_step.first_findings.iter().any(|known| known.kind() == first.kind()) {
+                kept_step.first_findings.push(*first);
             }
         }
-        kept.further_counts += findings.further_counts;
+        kept_step.further_counts += findings.further_counts;
     }
 }
 

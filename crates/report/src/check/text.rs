@@ -112,13 +112,13 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
             step_share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, group_digits) + &first
         }
         Overall::None => {
-            let judged = group_digits(u64::from(outcome.steps_judged_by(Book::Parity)));
+            let judged_steps = group_digits(u64::from(outcome.steps_judged_by(Book::Parity)));
             let end = match &outcome.stop_by(Book::Parity) {
                 Some(stop) if is_limit(stop) => "a limit of this program ended judging",
                 Some(Stop::Step(_)) => "the original would not terminate",
                 _ => "the trace could not be read further",
             };
-            format!("judged {judged} of {}, then {end}", format_count(outcome.steps.into(), "step"))
+            format!("judged {judged_steps} of {}, then {end}", format_count(outcome.steps.into(), "step"))
         }
     };
     match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {

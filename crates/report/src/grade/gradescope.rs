@@ -127,8 +127,9 @@ fn describe_grade(grade: &Grade) -> String {
         lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
         // A fault of the whole upload does not reveal anything about hidden scenes.
-        let shown = if grade.submission_fault().is_some() { Cow::Borrowed(grade) } else { immediate_grade(grade) };
-        lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
+        let visible_grade =
+            if grade.submission_fault().is_some() { Cow::Borrowed(grade) } else { immediate_grade(grade) };
+        lines.extend(head_lines(&visible_grade).iter().map(|line| strip_control_characters(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", strip_control_characters(warning))));
     lines.join("\n")

@@ -119,8 +119,8 @@ pub fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     if together::is_only_extra(grade, mistake) {
         return Some("worth only extra points".to_owned());
     }
-    let lost = together::mistake_points(grade, mistake);
-    (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
+    let lost_points = together::mistake_points(grade, mistake);
+    (lost_points > 0.0).then(|| format!("worth {}", format_score(lost_points, grade.max_points)))
 }
 
 /// Returns the course's note on a mistake, in a form that follows the report's sentence; empty if there is no note.
@@ -156,9 +156,9 @@ pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
 
 /// Joins the first names into a list, such as `a, b, c and 2 more`.
 pub(super) fn list_first(names: &[impl AsRef<str>], max_names: usize) -> String {
-    let shown: Vec<_> = names.iter().take(max_names).map(|name| to_one_line(name.as_ref())).collect();
+    let first_names: Vec<_> = names.iter().take(max_names).map(|name| to_one_line(name.as_ref())).collect();
     let more = if names.len() > max_names { format!(" and {} more", names.len() - max_names) } else { String::new() };
-    shown.join(", ") + &more
+    first_names.join(", ") + &more
 }
 
 /// Formats points without trailing zeros, such as `12.5` or `10`.

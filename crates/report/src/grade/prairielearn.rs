@@ -46,9 +46,9 @@ struct Test {
 
 /// Renders the results of one submission.
 pub(crate) fn render(grade: &Grade) -> String {
-    let shown = immediate_grade(grade);
+    let visible_grade = immediate_grade(grade);
     let mut scenes: Vec<_> =
-        shown.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene))).collect();
+        visible_grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene))).collect();
     scenes.sort_by_key(|(_, scene)| scene.verdict.is_accepted());
     let tests = scenes
         .into_iter()
@@ -65,8 +65,8 @@ pub(crate) fn render(grade: &Grade) -> String {
             },
             output: truncate(&describe_scene(scene)),
         })
-        .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
-            Test {
+        .chain(visible_grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(
+            |(group, speed)| Test {
                 name: format!("speed ({})", to_one_line(&group.name)),
                 group: to_one_line(&group.name),
                 description: "processor time compared with the reference's".to_owned(),
@@ -74,15 +74,15 @@ pub(crate) fn render(grade: &Grade) -> String {
                 max_points: speed.marking.points,
                 message: truncate(&describe_speed(speed)),
                 output: String::new(),
-            }
-        }))
+            },
+        ))
         .collect();
     let build = grade.failed_build();
     // A fault of the whole upload applies to all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.submission_fault().is_some() => head_lines(grade),
-        None => head_lines(&shown),
+        None => head_lines(&visible_grade),
     };
     let is_gradable = grade.points.is_some() && grade.verdict != Verdict::Unusable;
     let results = Results {
@@ -95,11 +95,11 @@ pub(crate) fn render(grade: &Grade) -> String {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
             // The verdict must not reveal results of groups that students do not see.
-            verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
+            verdict if visible_grade.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
                 "{} on the tests shown here ({}); other tests are hidden",
-                shown.verdict,
-                format_score(shown.points.unwrap_or_default(), shown.max_points)
+                visible_grade.verdict,
+                format_score(visible_grade.points.unwrap_or_default(), visible_grade.max_points)
             ),
         },
         output: grade
@@ -111,7 +111,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             .map(|text| truncate(&text))
             .collect::<Vec<_>>()
             .join("\n"),
-        groups: shown
+        groups: visible_grade
             .groups
             .iter()
             .map(|group| Group {

@@ -56,11 +56,11 @@ pub struct GradePage<'a> {
 impl GradePage<'_> {
     /// Renders the page as one HTML file.
     pub fn html(&self) -> String {
-        let shown = match self.reader {
+        let visible_grade = match self.reader {
             Audience::Student => immediate_grade(self.grade),
             Audience::Staff => Cow::Borrowed(self.grade),
         };
-        let grade = shown.as_ref();
+        let grade = visible_grade.as_ref();
         let causes = group_by_cause(grade);
         let rows: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let is_accepted = rows.iter().all(|(scene, _)| scene.verdict.is_accepted());

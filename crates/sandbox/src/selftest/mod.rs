@@ -107,7 +107,7 @@ pub fn run(
     run_selected(backend, compiler, folder, |_| true, report)
 }
 
-/// Runs the self-test like [`run`], but only for the attacks that `chosen` names.
+/// Runs the self-test like [`run`], but only for the attacks that `is_chosen` selects.
 ///
 /// # Errors
 ///
@@ -116,7 +116,7 @@ pub fn run_selected(
     backend: &Backend,
     compiler: &Path,
     folder: &Path,
-    chosen: impl Fn(&str) -> bool,
+    is_chosen: impl Fn(&str) -> bool,
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
     if !is_active(backend.layers(), Layer::CallFilter) {
@@ -130,7 +130,7 @@ pub fn run_selected(
         std::fs::create_dir_all(made).map_err(folder_error)?;
     }
     let mut attacks = attacks();
-    attacks.retain(|attack| chosen(&attack.name));
+    attacks.retain(|attack| is_chosen(&attack.name));
     let header = ATTACK_SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
     write_file(&sources.join("attack.h"), header).map_err(folder_error)?;
 

@@ -217,8 +217,8 @@ impl GroupPart {
     }
 
     fn find_limits(&mut self) {
-        let held = |(name, file): &GroupLimit| self.open(file, OFlags::WRONLY).is_ok().then_some(*name);
-        self.limits = self.kind.limits().iter().filter_map(held).collect();
+        let find_writable = |(name, file): &GroupLimit| self.open(file, OFlags::WRONLY).is_ok().then_some(*name);
+        self.limits = self.kind.limits().iter().filter_map(find_writable).collect();
     }
 
     fn open_entry_file(&self) -> io::Result<File> {

@@ -31,12 +31,12 @@ pub(super) struct HiddenUsage {
 /// not limited.
 pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> HiddenUsage {
     let mut holdings = HiddenUsage::default();
-    let mut seen = BTreeSet::new();
+    let mut counted_inodes = BTreeSet::new();
     let mut mapped = Vec::new();
     for (pid, thread) in members {
         let task = format!("/proc/{pid}/task/{thread}");
         let mut count = |metadata: &Metadata| {
-            if metadata.is_file() && metadata.nlink() == 0 && seen.insert(metadata.ino()) {
+            if metadata.is_file() && metadata.nlink() == 0 && counted_inodes.insert(metadata.ino()) {
                 holdings.nameless_bytes += metadata.blocks() * BLOCK_BYTES;
             }
         };
@@ -54,13 +54,13 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
             holdings.memory += machine::read_byte_count(&status, "VmPTE:").unwrap_or(0);
         }
     }
-    let shown = path_in_maps(root);
+    let root_in_maps = path_in_maps(root);
     // Only root can find out how much of a mapped file is on disk, so the size of the whole mapping counts.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.is_shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
-        let file = mapping.name.starts_with(&shown);
-        if (memory || file) && seen.insert(mapping.inode) {
+        let file = mapping.name.starts_with(&root_in_maps);
+        if (memory || file) && counted_inodes.insert(mapping.inode) {
             *(if memory { &mut holdings.memory } else { &mut holdings.nameless_bytes }) += mapping.end;
         }
     }

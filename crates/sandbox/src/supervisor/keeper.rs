@@ -43,11 +43,11 @@ pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match fork_keeper(&first.order) {
-        Ok(ForkSide::Guardian { keeper, held }) => {
+        Ok(ForkSide::Guardian { keeper, resources }) => {
             // The pipe from which the grader reads must be closed at the end of the run.
             drop((first, socket));
             let code = sys::wait_for_exit(keeper).unwrap_or(1);
-            drop(held);
+            drop(resources);
             code
         }
         Ok(ForkSide::Keeper(keeper)) => keeper.serve(first, &socket),
@@ -91,7 +91,7 @@ enum ForkSide {
     /// The process outside of the namespaces, which only waits for the keeper.
     Guardian {
         keeper: i32,
-        held: ExclusiveResources,
+        resources: ExclusiveResources,
     },
     Keeper(Keeper),
 }
@@ -100,14 +100,14 @@ enum ForkSide {
 fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
     let single_thread = sys::single_thread().map_err(failure_at("fork"))?;
-    let held = ExclusiveResources::claim(order)?;
+    let resources = ExclusiveResources::claim(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
-        return Ok(ForkSide::Guardian { keeper, held });
+        return Ok(ForkSide::Guardian { keeper, resources });
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(failure_at("make namespaces"))?;
     file_view::prepare(order)?;
     let prepared = PreparedRun::for_order(order, PROGRAM_PID, single_thread)?;
-    Ok(ForkSide::Keeper(Keeper { resources: Some(held), prepared }))
+    Ok(ForkSide::Keeper(Keeper { resources: Some(resources), prepared }))
 }
 
 struct Keeper {
@@ -154,11 +154,11 @@ impl Keeper {
     /// Serves one run, and returns the exit code of its supervisor.
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
-        let Some(held) = self.resources.take() else { return 1 };
+        let Some(resources) = self.resources.take() else { return 1 };
         let bound = sys::die_with_parent().map_err(failure_at("make the supervisor end with its keeper"));
         let finished = bound
             .and_then(|()| file_view::complete_view(&order, folder.as_fd(), &files))
-            .and_then(|()| Run::start(order, control, held, &self.prepared))
+            .and_then(|()| Run::start(order, control, resources, &self.prepared))
             .and_then(|run| run.finish(&mut answers));
         run::report_end(finished, &mut answers)
     }

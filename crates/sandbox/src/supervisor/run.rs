@@ -80,13 +80,13 @@ enum StartedRun {
 fn prepare_run(order: RunOrder, control: File) -> Result<StartedRun, Failure> {
     // In a session of its own, the supervisor does not receive Ctrl-C from the terminal. The grader tells it to stop.
     sys::start_session().map_err(failure_at("start the supervisor's session"))?;
-    let held = ExclusiveResources::claim(&order)?;
+    let resources = ExclusiveResources::claim(&order)?;
     if order.layers.namespaces
         && let NamespaceSide::Outside(code) = namespaces::enter(&order)?
     {
         return Ok(StartedRun::Elsewhere(code));
     }
-    Run::start(order, control, held, &PreparedRun::default()).map(|run| StartedRun::Here(Box::new(run)))
+    Run::start(order, control, resources, &PreparedRun::default()).map(|run| StartedRun::Here(Box::new(run)))
 }
 
 /// The report on a run, with its standard output and its standard error.
@@ -126,10 +126,10 @@ impl Run {
     pub(super) fn start(
         order: RunOrder,
         control: File,
-        held: ExclusiveResources,
+        resources: ExclusiveResources,
         prepared: &PreparedRun,
     ) -> Result<Self, Failure> {
-        let (order, ExclusiveResources { slot, group }) = (Rc::new(order), held);
+        let (order, ExclusiveResources { slot, group }) = (Rc::new(order), resources);
         sys::become_reaper().map_err(failure_at("become the reaper"))?;
         let folder: OwnedFd =
             File::open(wire::to_path(&order.folder)).map_err(failure_at("open the working folder"))?.into();

@@ -42,15 +42,15 @@ impl CapturedStream {
         } else {
             &mut small[..]
         };
-        let mut taken = 0;
-        while taken < BYTES_PER_COPY {
+        let mut received_bytes = 0;
+        while received_bytes < BYTES_PER_COPY {
             match pipe.read(buffer) {
                 Ok(0) => {
                     self.pipe = None;
                     break;
                 }
                 Ok(length) => {
-                    taken += length;
+                    received_bytes += length;
                     let room = usize::try_from(self.limit).unwrap_or(usize::MAX) - self.bytes.len();
                     self.bytes.extend_from_slice(&buffer[..length.min(room)]);
                     self.truncated |= length > room;
@@ -59,7 +59,7 @@ impl CapturedStream {
                 Err(_) => break,
             }
         }
-        taken > 0
+        received_bytes > 0
     }
 
     /// Reads the rest of the stream. This must be called only when no process is alive that could still write.

@@ -48,8 +48,9 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Man { command } => {
                 let mut all = Arguments::command();
                 all.build();
-                let shown = command.as_ref().and_then(|name| all.find_subcommand(name)).unwrap_or(&all).clone();
-                clap_mangen::Man::new(shown).render(&mut std::io::stdout())?;
+                let described_command =
+                    command.as_ref().and_then(|name| all.find_subcommand(name)).unwrap_or(&all).clone();
+                clap_mangen::Man::new(described_command).render(&mut std::io::stdout())?;
             }
             Command::Completions { shell } => {
                 clap_complete::generate(*shell, &mut Arguments::command(), "fosssim-server", &mut std::io::stdout());

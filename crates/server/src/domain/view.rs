@@ -504,9 +504,9 @@ pub(super) async fn history(
     // The code, the points and their maximum, as the reader may see them.
     let read_grade = |row: &Row, side: &str| {
         let column = |name: &str| row.maybe_text(&format!("{side}_{name}"));
-        let shown = column("shown")?.filter(|_| withheld).as_deref().and_then(VisibleGrade::from_text);
-        Ok::<_, DbError>(match shown {
-            Some(shown) => (Some(shown.code), shown.points, shown.max_points),
+        let visible_grade = column("shown")?.filter(|_| withheld).as_deref().and_then(VisibleGrade::from_text);
+        Ok::<_, DbError>(match visible_grade {
+            Some(visible_grade) => (Some(visible_grade.code), visible_grade.points, visible_grade.max_points),
             None => (column("code")?, column("points")?, column("max_points")?),
         })
     };

@@ -63,13 +63,17 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
     }
     let statement = "SELECT id, attempt, failures, deaths, worker FROM job
         WHERE state = 'running' AND lease_until < {now} ORDER BY id {skip locked}";
-    let lost = transaction.rows(statement, values![]).await?;
-    give_up_workers(transaction, policy, lost).await
+    let expired_jobs = transaction.rows(statement, values![]).await?;
+    give_up_workers(transaction, policy, expired_jobs).await
 }
 
-async fn give_up_workers(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<Row>) -> Result<Tick, DbError> {
+async fn give_up_workers(
+    transaction: &mut Transaction,
+    policy: &QueuePolicy,
+    expired_jobs: Vec<Row>,
+) -> Result<Tick, DbError> {
     let mut tick = Tick::default();
-    for row in lost {
+    for row in expired_jobs {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
         match give_up_worker(transaction, policy, &row, NO_ANSWER).await? {

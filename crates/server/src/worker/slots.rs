@@ -171,7 +171,13 @@ async fn run_job<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Cla
 
 /// Renews a lease until it is lost. This happens at the interval that the source requires, and whenever the grading
 /// makes progress.
-async fn renew<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
+async fn renew<D: JobSource>(
+    source: D,
+    lease: Lease,
+    every: Duration,
+    file: Option<PathBuf>,
+    lease_lost: CancellationToken,
+) {
     let mut last_renewal = tokio::time::Instant::now();
     let mut reported = None;
     loop {
@@ -187,7 +193,7 @@ async fn renew<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opt
             Ok(answer) if answer.held => {}
             Ok(_) => {
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
-                return lost.cancel();
+                return lease_lost.cancel();
             }
             // The grading continues. When it ends, the source decides whether the result still counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),

@@ -21,11 +21,11 @@ pub fn alpha([one, two, three]: &[PointMotion; 3], t: f64) -> f64 {
 /// Returns the vector from the particle to the closest point of the line at time `t`.
 pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Vec2 {
     let mistake = student.mistake_in(VECTOR_AREAS);
-    let held = |body: PointMotion| PointMotion { start: body.position_at(1.0), shift: Vec2::zeros() };
+    let hold_at_end = |body: PointMotion| PointMotion { start: body.position_at(1.0), shift: Vec2::zeros() };
     let [mut one, mut two, mut three] = *bodies;
     match mistake {
-        Some(Mistake::ParticleEdgeContactParticleAtEnd) => one = held(one),
-        Some(Mistake::ParticleEdgeContactEdgeAtEnd) => (two, three) = (held(two), held(three)),
+        Some(Mistake::ParticleEdgeContactParticleAtEnd) => one = hold_at_end(one),
+        Some(Mistake::ParticleEdgeContactEdgeAtEnd) => (two, three) = (hold_at_end(two), hold_at_end(three)),
         _ => {}
     }
     let bodies = &[one, two, three];

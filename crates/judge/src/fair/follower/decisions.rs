@@ -138,14 +138,14 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Round-off may change whether the pair collides, but not the normal and the time of the collision.
-                    let (expected, judged) = (self.expected_polynomials(), &mut self.judgment);
+                    let (expected, step_judgment) = (self.expected_polynomials(), &mut self.judgment);
                     let finding = contact::compare_possible_hit(
                         self.context,
                         &self.records,
                         expected.as_ref(),
                         pair,
                         &actual,
-                        judged,
+                        step_judgment,
                     );
                     finding.into_iter().for_each(|detail| self.add_finding(detail));
                 } else {

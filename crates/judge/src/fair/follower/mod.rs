@@ -108,13 +108,13 @@ impl<'a> Follower<'a> {
         sensitivity: Option<&'a Sensitivity>,
         flips: &'a [usize],
     ) -> Self {
-        let judged = StepJudgment { step: records.step, frame: records.frame, ..StepJudgment::default() };
+        let step_judgment = StepJudgment { step: records.step, frame: records.frame, ..StepJudgment::default() };
         let mut follower = Self {
             context,
             records,
             sensitivity,
             flipped_decisions: flips,
-            judgment: judged,
+            judgment: step_judgment,
             decisions: Vec::new(),
             borderline_calls: Vec::new(),
             pass: Pass { stage: Stage::Simple, index: 0 },
@@ -284,8 +284,8 @@ impl StepController for Follower<'_> {
             if self.call.is_excluded_by_log {
                 return;
             }
-            let lost = differ && lengths().any(|(own, logged)| logged < own);
-            self.call.own = contact::find_time(polynomials).map(|time| ReferenceImpact { time, has_losses: lost });
+            let has_losses = differ && lengths().any(|(own, logged)| logged < own);
+            self.call.own = contact::find_time(polynomials).map(|time| ReferenceImpact { time, has_losses });
         }
         let Some(searched) = self.searchable_polynomials(index, count) else { return };
         if let (true, Some(ReferenceImpact { time, has_losses: false }), Some(CallMotion { motion, .. })) =

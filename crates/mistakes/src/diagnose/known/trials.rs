@@ -60,8 +60,8 @@ impl<'a> Trials<'a> {
     /// Returns the part of the logged step that the program reproduces, from 0 to 1. The polynomials count as the first
     /// half of the step.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
-    pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
-        let logged = &kept.records.end.polynomials;
+    pub(super) fn reproduced_share(&self, program: &Program, kept_step: &KeptStep) -> f64 {
+        let logged = &kept_step.records.end.polynomials;
         let (logged_count, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {
             logged_count.set(logged_count.get() + 1);
@@ -72,12 +72,12 @@ impl<'a> Trials<'a> {
             goes_on
         };
         let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
-        let records = resimulate(&program.0, &kept.before, &mut log);
+        let records = resimulate(&program.0, &kept_step.before, &mut log);
         self.used_work.set(self.used_work.get() + logged_count.get() + log.long_searches);
         self.remaining_work.set(self.remaining_work.get().saturating_sub(logged_count.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
-        match find_first_difference(&records, &kept.records, &self.round_off) {
+        match find_first_difference(&records, &kept_step.records, &self.round_off) {
             None => 1.0,
             Some(StepDifference::Polynomial(index)) => share(index),
             Some(StepDifference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),

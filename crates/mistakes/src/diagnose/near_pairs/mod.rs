@@ -61,22 +61,22 @@ pub(super) fn explain_pairs(reference: &mut Reference<'_>, scene: &Scene, scan: 
     let no_counts = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(no_counts).into() };
     let mut seen_pairs: BTreeSet<(Pair, usize)> = BTreeSet::new();
-    for kept in steps {
-        let own = reference.step(kept.step, &kept.before, &mut ())?;
-        let moment = StepGeometry::new(scene, &kept.before);
-        for (pair, times) in count_applications(scene, &kept.before, own, &kept.records.end.state) {
+    for kept_step in steps {
+        let own = reference.step(kept_step.step, &kept_step.before, &mut ())?;
+        let moment = StepGeometry::new(scene, &kept_step.before);
+        for (pair, times) in count_applications(scene, &kept_step.before, own, &kept_step.records.end.state) {
             if remaining_work == 0 || !seen_pairs.insert((pair, times)) {
                 continue;
             }
             remaining_work -= 1;
-            if times != 1 && wrong.first.is_none_or(|(_, step)| kept.step < step) {
-                wrong.first = Some((pair, kept.step));
+            if times != 1 && wrong.first.is_none_or(|(_, step)| kept_step.step < step) {
+                wrong.first = Some((pair, kept_step.step));
             }
             let placed = PlacedPair { geometry: &moment, pair };
             let counts = &mut wrong.counts_by_kind[pair.kind as usize];
             counts.counts_by_times[times] += 1;
-            let held = variants.iter().zip(&mut counts.traits).filter(|(variant, _)| variant.holds(&placed));
-            held.for_each(|(_, counts)| counts[times] += 1);
+            let matching_traits = variants.iter().zip(&mut counts.traits).filter(|(variant, _)| variant.holds(&placed));
+            matching_traits.for_each(|(_, counts)| counts[times] += 1);
         }
     }
     wrong.first?;

@@ -84,8 +84,8 @@ impl DesignMatrix {
             [(1, total), (2, total), (3, triple_columns), (4, self.likely_count.min(MAX_FOR_QUADRUPLES))]
         {
             let mut accepted = Vec::new();
-            problem.search(&mut PartialSelection::default(), 0, among, size, &mut |chosen| {
-                if let Some(support) = self.solve(chosen, &fits)
+            problem.search(&mut PartialSelection::default(), 0, among, size, &mut |columns| {
+                if let Some(support) = self.solve(columns, &fits)
                     && accept(&support)
                 {
                     accepted.push(support);
@@ -103,21 +103,21 @@ impl DesignMatrix {
     /// `None` if they leave a residual, or if they are nearly dependent.
     fn find_by_pursuit(&self, target: &[f64], fits: &[f64], among: usize) -> Option<WeightedColumns> {
         let square = dot(target, target);
-        let mut chosen: Vec<usize> = Vec::new();
+        let mut columns: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();
-        while chosen.len() < MAX_SUPPORT {
+        while columns.len() < MAX_SUPPORT {
             let best = (0..among)
-                .filter(|column| !chosen.contains(column))
+                .filter(|column| !columns.contains(column))
                 .map(|column| (column, dot(&self.unit[column], &residual).abs()))
                 .max_by(|one, two| one.1.total_cmp(&two.1))?;
-            chosen.push(best.0);
-            let weights = self.weights(&chosen, fits)?;
+            columns.push(best.0);
+            let weights = self.weights(&columns, fits)?;
             residual.copy_from_slice(target);
-            for (&column, weight) in chosen.iter().zip(&weights) {
+            for (&column, weight) in columns.iter().zip(&weights) {
                 residual.iter_mut().zip(&self.unit[column]).for_each(|(rest, value)| *rest -= weight * value);
             }
             if dot(&residual, &residual) <= SMALL_RESIDUAL * square {
-                return self.solve(&chosen, fits);
+                return self.solve(&columns, fits);
             }
         }
         None
@@ -125,9 +125,9 @@ impl DesignMatrix {
 
     /// Returns the chosen columns with their weights before they were scaled to length 1. Returns `None` if the columns
     /// are nearly dependent.
-    fn solve(&self, chosen: &[usize], fits: &[f64]) -> Option<WeightedColumns> {
-        let weights = self.weights(chosen, fits)?;
-        let mut support: WeightedColumns = chosen
+    fn solve(&self, columns: &[usize], fits: &[f64]) -> Option<WeightedColumns> {
+        let weights = self.weights(columns, fits)?;
+        let mut support: WeightedColumns = columns
             .iter()
             .zip(weights)
             .map(|(&column, weight)| (self.indices[column], weight / self.norms[column]))
@@ -138,15 +138,15 @@ impl DesignMatrix {
 
     /// Solves the normal equations of unit columns by Cholesky's method. Returns `None` if the columns are nearly
     /// dependent.
-    fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
-        let (size, count) = (chosen.len(), self.indices.len());
-        let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);
+    fn weights(&self, columns: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
+        let (size, count) = (columns.len(), self.indices.len());
+        let gram = DMatrix::from_fn(size, size, |row, column| self.gram[columns[row] * count + columns[column]]);
         let factor = gram.cholesky()?;
         let is_dependent = |diagonal: f64| !(diagonal * diagonal > MIN_INDEPENDENCE);
         if factor.l_dirty().diagonal().iter().any(|&diagonal| is_dependent(diagonal)) {
             return None;
         }
-        let fits = DVector::from_iterator(size, chosen.iter().map(|&column| fits[column]));
+        let fits = DVector::from_iterator(size, columns.iter().map(|&column| fits[column]));
         Some(factor.solve(&fits).as_slice().to_vec())
     }
 }
@@ -161,7 +161,7 @@ struct FitProblem<'a> {
 /// the explained part of its squared length.
 #[derive(Default)]
 struct PartialSelection {
-    chosen: Vec<usize>,
+    columns: Vec<usize>,
     rows: Vec<[f64; 4]>,
     forward: Vec<f64>,
     explained: f64,
@@ -178,12 +178,12 @@ impl FitProblem<'_> {
         found: &mut impl FnMut(&[usize]),
     ) {
         let count = self.columns.indices.len();
-        let depth = partial.chosen.len();
+        let depth = partial.columns.len();
         for column in from..among {
             let mut row = [0.0; 4];
             let mut diagonal = 1.0;
             let mut forward = self.fits[column];
-            for (inner, &other) in partial.chosen.iter().enumerate() {
+            for (inner, &other) in partial.columns.iter().enumerate() {
                 let mut value = self.columns.gram[column * count + other];
                 for (before, entry) in row.iter().enumerate().take(inner) {
                     value -= entry * partial.rows[inner][before];
@@ -199,19 +199,19 @@ impl FitProblem<'_> {
             let explained = partial.explained + forward * forward;
             if depth + 1 == size {
                 if self.square - explained <= SMALL_RESIDUAL * self.square {
-                    partial.chosen.push(column);
-                    found(&partial.chosen);
-                    partial.chosen.pop();
+                    partial.columns.push(column);
+                    found(&partial.columns);
+                    partial.columns.pop();
                 }
                 continue;
             }
             row[depth] = diagonal.sqrt();
             let before = std::mem::replace(&mut partial.explained, explained);
-            partial.chosen.push(column);
+            partial.columns.push(column);
             partial.rows.push(row);
             partial.forward.push(forward);
             self.search(partial, column + 1, among, size, found);
-            partial.chosen.pop();
+            partial.columns.pop();
             partial.rows.pop();
             partial.forward.pop();
             partial.explained = before;

@@ -83,10 +83,10 @@ impl<'a> PolynomialStudy<'a> {
             .filter_map(|sample| {
                 let logged = sample.polynomials.get(number)?.as_slice();
                 let inputs = Inputs::new(&sample.motion);
-                let judged = BoundedPairMotion::from(&sample.motion).polynomials();
-                let expected = judged.polynomial(number).to_vec();
+                let polynomials = BoundedPairMotion::from(&sample.motion).polynomials();
+                let expected = polynomials.polynomial(number).to_vec();
                 let right = is_right(&expected, logged)
-                    || judged.other_form(number).is_some_and(|other| is_right(other, logged));
+                    || polynomials.other_form(number).is_some_and(|other| is_right(other, logged));
                 let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite())
                     && logged.iter().all(|value| value.is_finite());
                 finite.then_some(PolynomialSample { sample, logged, inputs, expected, is_right: right, scale: 1.0 })

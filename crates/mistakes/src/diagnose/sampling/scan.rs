@@ -159,9 +159,10 @@ impl Scanner {
         let context = difference.map_or(StepContext::default(), |_| {
             self.step_context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
         });
-        let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
-        self.memory += kept.memory_size();
-        if difference.is_some() { self.scan.wrong_steps.push(kept) } else { self.scan.right_steps.push(kept) }
+        let kept_step =
+            KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
+        self.memory += kept_step.memory_size();
+        if difference.is_some() { self.scan.wrong_steps.push(kept_step) } else { self.scan.right_steps.push(kept_step) }
     }
 
     /// Returns a number that similar steps share: they have the same events, and the same first difference.

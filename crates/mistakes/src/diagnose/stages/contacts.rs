@@ -128,9 +128,9 @@ pub(super) fn explain_overlaps(
         });
         let Some(first) = first else { continue };
         // An earlier response of the pass changes velocities, and with them whether its bodies approach others.
-        let moved: Vec<usize> = ours[..first].iter().flat_map(particles).collect();
+        let moved_particles: Vec<usize> = ours[..first].iter().flat_map(particles).collect();
         let differing = ours.get(first).into_iter().chain(theirs.get(first)).flat_map(particles);
-        if differing.into_iter().any(|particle| moved.contains(&particle)) {
+        if differing.into_iter().any(|particle| moved_particles.contains(&particle)) {
             continue;
         }
         // A pass tests all pairs of a particle before those of the next one.

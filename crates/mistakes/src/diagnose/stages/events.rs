@@ -140,18 +140,19 @@ pub(super) struct StepFacts {
 
 impl StepFacts {
     /// Returns the facts about a step, or `None` if the reference has no result.
-    pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
-        let prediction = reference.step(kept.step, &kept.before, &mut SteeringObserver(NoCollisions))?.clone();
+    pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept_step: &KeptStep) -> Option<Self> {
+        let prediction =
+            reference.step(kept_step.step, &kept_step.before, &mut SteeringObserver(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, events: Events::default() });
-        reference.step(kept.step, &kept.before, &mut observers)?;
+        reference.step(kept_step.step, &kept_step.before, &mut observers)?;
         let (capture, StepEvents { events, .. }) = observers;
-        let (mut expected, actual) = (capture.records, kept.records.clone());
+        let (mut expected, actual) = (capture.records, kept_step.records.clone());
         accept_other_forms(&mut expected, &actual, &events.other_forms);
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
         let is_right = |(ours, theirs): &(&[f64], &[f64])| polynomial_matches(ours, theirs, &ROUND_OFF);
         let right_polynomials = ours.iter().zip(theirs.iter()).take_while(is_right).count();
         let is_wrong = find_first_difference(&expected, &actual, &ROUND_OFF).is_some();
-        let (before, Events { hits, passes, zones, detections, .. }) = (kept.before.clone(), events);
+        let (before, Events { hits, passes, zones, detections, .. }) = (kept_step.before.clone(), events);
         Some(Self {
             is_wrong,
             before,
@@ -252,14 +253,14 @@ fn accept_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: 
             && polynomial_matches(other, theirs.get(index), &ROUND_OFF)
             && (index - APPROACH_INDEX..index).all(is_right)
     };
-    let taken: Vec<usize> = others.iter().filter(is_taken).map(|(index, _)| *index).collect();
-    if taken.is_empty() {
+    let accepted_indices: Vec<usize> = others.iter().filter(is_taken).map(|(index, _)| *index).collect();
+    if accepted_indices.is_empty() {
         return;
     }
     let replaced = |ours: &PolynomialLog| {
         let mut log = PolynomialLog::default();
         for (index, list) in ours.iter().enumerate() {
-            log.push(if taken.binary_search(&index).is_ok() { theirs.get(index) } else { list });
+            log.push(if accepted_indices.binary_search(&index).is_ok() { theirs.get(index) } else { list });
         }
         log
     };

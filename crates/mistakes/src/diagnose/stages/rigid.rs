@@ -35,11 +35,11 @@ pub(super) fn explain_geometric_part(scene: &Scene, facts: &[StepFacts]) -> Opti
     if let Some(positions) = explain_first_positions(scene, &wrong) {
         return Some(positions);
     }
-    let mut moved = ZoneMotions::default();
+    let mut zone_motions = ZoneMotions::default();
     for facts in facts {
-        moved.compare(scene, facts);
+        zone_motions.compare(scene, facts);
     }
-    moved
+    zone_motions
         .explain()
         .or_else(|| explain_positions_before_failsafe(scene, &wrong))
         .or_else(|| explain_rounds(scene, &wrong))

@@ -27,18 +27,18 @@ pub(super) fn explain<'a>(
 ) -> Option<Explanation> {
     let mut capture = Capture::new(&scene.collision);
     let (mut contacts, mut entries, mut count) = (Vec::new(), Vec::new(), 0);
-    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MAX_STEPS) {
-        reference.step(kept.step, &kept.before, &mut capture)?;
+    for kept_step in steps.filter(|kept_step| kept_step.difference.is_some()).take(super::MAX_STEPS) {
+        reference.step(kept_step.step, &kept_step.before, &mut capture)?;
         count += 1;
-        contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
-        entries.extend(find_wrong_entries(scene, kept, &capture));
+        contacts.push((capture.records.end.impulses.clone(), kept_step.records.end.impulses.clone()));
+        entries.extend(find_wrong_entries(scene, kept_step, &capture));
     }
     explain_overlaps(scene, &contacts).or_else(|| explain_changes(scene, &entries, count))
 }
 
 /// Returns the wrong velocities, and the positions that do not follow from the actual velocities.
-fn find_wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
-    let (before, actual, expected) = (&kept.before, &kept.records.end.state, &capture.records.end.state);
+fn find_wrong_entries(scene: &Scene, kept_step: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
+    let (before, actual, expected) = (&kept_step.before, &kept_step.records.end.state, &capture.records.end.state);
     let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE_ERROR * (1.0 + expected.abs());
     let mut entries = Vec::new();
     for index in 0..before.positions.len() {
@@ -53,10 +53,10 @@ fn find_wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<
             _ if matches!(scene.collision, Collision::Simple { .. }) => continue,
             _ => new,
         };
-        let moved = scene.time_step * rate;
-        if is_wrong(actual.positions[index], x + moved) {
+        let displacement = scene.time_step * rate;
+        if is_wrong(actual.positions[index], x + displacement) {
             let actual = actual.positions[index] - x;
-            entries.push(WrongEntry { index, quantity: Quantity::Position, actual, expected: moved });
+            entries.push(WrongEntry { index, quantity: Quantity::Position, actual, expected: displacement });
         }
     }
     entries

@@ -213,8 +213,8 @@ impl<'a> FirstRound<'a> {
                 zone.particles.iter().copied().filter(|particle| !part.contains(particle)).collect();
             let leads_there = |group: &ParticleGroup| {
                 let is_body = group.particles.len() > 1 || group.must_stop(self.scene);
-                let moved = self.moved_state(&[group]);
-                is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &other_particles)
+                let moved_state = self.moved_state(&[group]);
+                is_body && self.are_at(&moved_state, &group.particles) && self.are_at(self.middle, &other_particles)
             };
             // A particle with the expected position was not omitted.
             let is_left = || other_particles.iter().any(|&particle| !self.is_at(&self.expected_state(zone), particle));

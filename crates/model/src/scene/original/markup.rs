@@ -95,9 +95,9 @@ impl<'t> Cursor<'t> {
         self.text.get(self.offset..).unwrap_or_default()
     }
 
-    fn skip(&mut self, wanted: impl Fn(u8) -> bool) -> &'t [u8] {
+    fn skip(&mut self, is_skipped: impl Fn(u8) -> bool) -> &'t [u8] {
         let rest = self.rest();
-        let length = rest.iter().position(|&byte| !wanted(byte)).unwrap_or(rest.len());
+        let length = rest.iter().position(|&byte| !is_skipped(byte)).unwrap_or(rest.len());
         self.offset += length;
         &rest[..length]
     }

@@ -78,11 +78,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
 fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
-    let shown = if listed.len() > MAX_GROUPS + 1 { MAX_GROUPS } else { listed.len() };
-    if shown < listed.len() {
+    let row_count = if listed.len() > MAX_GROUPS + 1 { MAX_GROUPS } else { listed.len() };
+    if row_count < listed.len() {
         listed.sort_by_key(|group| group.verdict.is_accepted());
     }
-    for group in listed.iter().take(shown) {
+    for group in listed.iter().take(row_count) {
         let name = to_one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
         let score = format!("{} of {}{extra}", format_optional_points(group.points), format_points(group.max_points));
@@ -97,8 +97,8 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     for (group, speed) in grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))) {
         let _ = writeln!(text, "  {}: {}", to_one_line(&group.name), describe_speed(speed));
     }
-    if shown < listed.len() {
-        let _ = writeln!(text, "  and {}", format_count((listed.len() - shown) as u64, "more group"));
+    if row_count < listed.len() {
+        let _ = writeln!(text, "  and {}", format_count((listed.len() - row_count) as u64, "more group"));
     }
     text
 }

@@ -28,12 +28,12 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     if options.detail < TextDetail::Wrong || grade.submission_fault().is_some() {
         return String::new();
     }
-    let shown = |scene: &SceneGrade| options.detail == TextDetail::All || !scene.verdict.is_accepted();
-    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&to_one_line(&scene.scene)));
+    let is_shown = |scene: &SceneGrade| options.detail == TextDetail::All || !scene.verdict.is_accepted();
+    let names = grade.scenes().filter(|scene| is_shown(scene)).map(|scene| count_columns(&to_one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
     let scenes = Scenes { options, width, scenes_by_cause: group_by_cause(grade) };
     // The closing lines count the scenes that were not run.
-    let has_news = |scene: &SceneGrade| shown(scene) && (options.detail == TextDetail::All || !was_skipped(scene));
+    let has_news = |scene: &SceneGrade| is_shown(scene) && (options.detail == TextDetail::All || !was_skipped(scene));
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(has_news));
     let mut text: String = groups.map(|group| scenes.render_group(group)).collect();
     if scenes.scenes_by_cause.len() > MAX_DESCRIBED && options.detail < TextDetail::All {
@@ -107,7 +107,7 @@ impl<'a> Scenes<'a, '_> {
     }
 
     /// Returns whether the scene's cause is one of those that are described with an example.
-    fn is_described(&self, scene: &SceneGrade) -> bool {
+    fn is_shown(&self, scene: &SceneGrade) -> bool {
         let mut causes = self.scenes_by_cause.iter().take(MAX_DESCRIBED);
         self.options.detail == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
     }
@@ -129,7 +129,7 @@ impl<'a> Scenes<'a, '_> {
             lines.push(to_one_line(&words::summarize(scene)));
         }
         lines.extend(describe_difference(scene));
-        if self.is_described(scene) {
+        if self.is_shown(scene) {
             let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
             let likely = scene_lines(scene, self.options.style);
             lines.extend(details.iter().chain(&likely).map(|line| to_one_line(line)));

@@ -74,7 +74,7 @@ pub fn shorten_name(name: &str) -> String {
     }
     let letters: Vec<char> = name.chars().collect();
     // A wide letter takes two columns.
-    let taken = |letters: &mut dyn Iterator<Item = &char>| -> Vec<char> {
+    let take_fitting_letters = |letters: &mut dyn Iterator<Item = &char>| -> Vec<char> {
         let mut room = END_WIDTH;
         letters
             .take_while(|letter| {
@@ -86,8 +86,8 @@ pub fn shorten_name(name: &str) -> String {
             .copied()
             .collect()
     };
-    let start: String = taken(&mut letters.iter()).into_iter().collect();
-    let end: String = taken(&mut letters.iter().rev()).into_iter().rev().collect();
+    let start: String = take_fitting_letters(&mut letters.iter()).into_iter().collect();
+    let end: String = take_fitting_letters(&mut letters.iter().rev()).into_iter().rev().collect();
     format!("{start}...{end}")
 }
 

@@ -87,7 +87,7 @@ impl App {
         reject: fn(&'static str) -> Problem,
     ) -> Result<PendingSignIn, Problem> {
         let key = self.signing_key().await?;
-        let (pending, shown) = parse_state(&key, state).ok_or_else(|| reject(UNKNOWN_SIGN_IN))?;
+        let (pending, browser_digest) = parse_state(&key, state).ok_or_else(|| reject(UNKNOWN_SIGN_IN))?;
         let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
             AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
         let values = values![pending.expires_at, identity::digest(state)];
@@ -96,7 +96,7 @@ impl App {
         let browser = browser.ok_or_else(|| reject("your browser did not send the cookie of this sign-in"))?;
         // If the sign-in began in another browser, the owner of that browser may try to sign this one in as somebody
         // else.
-        ensure(shown == identity::digest(browser), reject("this sign-in began in another browser"))?;
+        ensure(browser_digest == identity::digest(browser), reject("this sign-in began in another browser"))?;
         Ok(pending)
     }
 

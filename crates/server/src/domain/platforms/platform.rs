@@ -93,8 +93,8 @@ impl Admin {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
         let registered = transaction.row(statement, values![&settings.issuer, &settings.client_id, name]).await?;
-        if let Some(taken) = registered {
-            let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
+        if let Some(other_platform) = registered {
+            let detail = format!("this issuer and client are registered as {}", other_platform.text("name")?);
             return Err(Problem::conflict(detail, "change that one"));
         }
         // Accounts belong to the people of one issuer, so the issuer cannot change.

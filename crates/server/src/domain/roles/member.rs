@@ -160,8 +160,8 @@ impl Member {
             Some(text) => text,
             None => visible_grade::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
-        if let Some(shown) = VisibleGrade::from_text(&text) {
-            shown.limit_to_students(&mut grade.outcome, STUDENT_PAGE);
+        if let Some(visible_grade) = VisibleGrade::from_text(&text) {
+            visible_grade.limit_to_students(&mut grade.outcome, STUDENT_PAGE);
             grade.created_at = visible_grade::round_to_hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(text);

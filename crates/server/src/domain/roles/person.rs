@@ -94,9 +94,9 @@ impl Person {
         let statement = "SELECT count(*) AS n, count(CASE WHEN name = ? THEN 1 END) AS with_name FROM token
             WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![name, self.account.id]).await?;
-        let taken =
+        let name_conflict =
             Problem::conflict("you already have a token with this name", "choose another name, or revoke that token");
-        ensure(count.int("with_name")? == 0, taken)?;
+        ensure(count.int("with_name")? == 0, name_conflict)?;
         ensure(count.int("n")? < 50, Problem::conflict("an account has at most 50 tokens", "revoke unused ones"))?;
         let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
         transaction.commit().await?;

@@ -30,8 +30,9 @@ impl AttemptChange {
     pub fn compare(since: i64, old: &StoredResult, new: &StoredResult) -> Self {
         let names = |result: &StoredResult| result.failed.keys().cloned().collect::<BTreeSet<_>>();
         let is_all_wrong = !new.parts.scenes.is_empty() && !new.parts.scenes.contains('r');
-        let (old, new) = (names(old), names(new));
-        let [newly_right, newly_wrong] = [&old - &new, &new - &old].map(|names| names.into_iter().collect());
+        let (old_names, new_names) = (names(old), names(new));
+        let changes = [&old_names - &new_names, &new_names - &old_names];
+        let [newly_right, newly_wrong] = changes.map(|names| names.into_iter().collect());
         Self { since, newly_right, newly_wrong, is_all_wrong }
     }
 }
@@ -85,12 +86,13 @@ impl Member {
     pub async fn attempt_changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
         let graded = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();
-        let shown = graded.iter().filter(|(submission, _)| !submission.is_withheld);
-        let stored = self.stored_results(&shown.map(|(_, result)| *result).collect::<Vec<_>>()).await?;
+        let visible_attempts = graded.iter().filter(|(submission, _)| !submission.is_withheld);
+        let stored_results =
+            self.stored_results(&visible_attempts.map(|(_, result)| *result).collect::<Vec<_>>()).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
             later.grade.as_ref().filter(|grade| grade.has_run())?;
-            let change = AttemptChange::compare(earlier.number, stored.get(&old)?, stored.get(&new)?);
+            let change = AttemptChange::compare(earlier.number, stored_results.get(&old)?, stored_results.get(&new)?);
             Some((later.id, change))
         };
         Ok(graded.windows(2).filter_map(change).collect())

@@ -220,12 +220,12 @@ async fn read(
             BestAttempt::from_list(&row.text("attempts")?, &staff_points, &policy, own_due.get(&account).copied());
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
-    let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
+    let counted_ids: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
     let statement = "SELECT grade.submission, submission.digest, result.code, result.max_points, result.summary,
             result.parts
         FROM {each} JOIN grade ON grade.submission = CAST(wanted.value AS {int})
         JOIN submission ON submission.id = grade.submission JOIN result ON result.id = grade.result";
-    let rows = transaction.rows(statement, values![serde_json::to_string(&counted).unwrap_or_default()]).await?;
+    let rows = transaction.rows(statement, values![serde_json::to_string(&counted_ids).unwrap_or_default()]).await?;
     let grades: HashMap<i64, &Row> = collect_by_id(&rows, |row| Ok((row.int("submission")?, row)))?;
     let mut standings = BTreeMap::new();
     for row in people.iter().filter(|row| row.int("id").is_ok_and(|id| !staff.contains(&id))) {

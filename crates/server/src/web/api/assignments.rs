@@ -178,8 +178,8 @@ pub(super) async fn export(
 async fn grades_csv(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     let standings = staff.standings(assignment).await?;
     let grades = standings.iter().filter_map(|standing| standing.counts.as_ref()?.grade.as_ref());
-    let stored = staff.stored_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
-    super::export_csv(&standings, &stored)
+    let stored_results = staff.stored_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
+    super::export_csv(&standings, &stored_results)
 }
 
 /// Returns all submissions as JSON, one per line. They are read from the database while they are sent.

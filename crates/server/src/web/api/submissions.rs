@@ -175,10 +175,10 @@ pub(super) async fn upload(
 /// # Errors
 ///
 /// Fails only if memory runs out.
-pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) -> Result<String, Problem> {
+pub fn export_csv(standings: &[Standing], stored_results: &BTreeMap<i64, StoredResult>) -> Result<String, Problem> {
     let head = "login,name,submissions,submission,verdict,points,grader_points,max_points,graded_at,likely_mistake";
     let mut groups: Vec<&str> = Vec::new();
-    for (group, _) in stored.values().flat_map(|kept| &kept.parts.groups) {
+    for (group, _) in stored_results.values().flat_map(|kept| &kept.parts.groups) {
         if !groups.contains(&group.as_str()) {
             groups.push(group);
         }
@@ -189,7 +189,7 @@ pub fn export_csv(standings: &[Standing], stored: &BTreeMap<i64, StoredResult>) 
         let grade = counts.and_then(|counts| counts.grade.as_ref());
         let staff_mark = counts.and_then(|counts| counts.mark.as_ref()).filter(|mark| mark.points.is_some());
         let or_empty = |text: Option<&String>| text.map(format_points).unwrap_or_default();
-        let parts = grade.and_then(|grade| Some(&stored.get(&grade.result)?.parts));
+        let parts = grade.and_then(|grade| Some(&stored_results.get(&grade.result)?.parts));
         let points = groups.iter().map(|name| {
             let found = parts.and_then(|parts| parts.groups.iter().find(|(group, _)| group == name));
             found.and_then(|(_, points)| points.map(format_points)).unwrap_or_default()

@@ -62,8 +62,10 @@ pub(super) async fn show_page(
     let other = other.ok_or_else(missing)?;
     let find_result = |submission: &Submission| submission.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
     let results = [find_result(&first)?, find_result(&other)?];
-    let stored = staff.stored_results(&results).await?;
-    let [Some(result), Some(other_result)] = results.map(|number| stored.get(&number)) else { return Err(missing()) };
+    let stored_results = staff.stored_results(&results).await?;
+    let [Some(result), Some(other_result)] = results.map(|number| stored_results.get(&number)) else {
+        return Err(missing());
+    };
     let scenes = find_differing(&result.failed, &other_result.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
     let frame = grades::class_frame(&staff, &assignment).with_parent(address, "Side by side");

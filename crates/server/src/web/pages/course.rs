@@ -160,9 +160,9 @@ pub(super) async fn read_rows(member: &Member) -> Result<Vec<AssignmentRow>, Pro
 pub(super) async fn show_course(member: Member) -> Page {
     let assignments = read_rows(&member).await?;
     let address = format!("/c/{}", member.slug);
-    let (frame, kept) =
+    let (frame, storage_notes) =
         (PageFrame::course(&member).with_parent(address, &member.title), member.describe_storage().await?);
-    render(&CoursePage { frame, member, assignments, storage_notes: kept })
+    render(&CoursePage { frame, member, assignments, storage_notes })
 }
 
 /// Creates an assignment that students cannot see yet, with a suite of the grader.

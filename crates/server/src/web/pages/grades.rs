@@ -142,7 +142,7 @@ pub(super) async fn show_class(
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|standing| Some(standing.counts.as_ref()?.grade.as_ref()?.result)).collect();
-    let stored = staff.stored_results(&results).await?;
+    let stored_results = staff.stored_results(&results).await?;
     render(&GradesPage {
         frame: class_frame(&staff, &assignment),
         slug,
@@ -154,8 +154,8 @@ pub(super) async fn show_class(
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        scenes: scenes::wrong_scenes(&standings, &stored),
-        stored_results: stored,
+        scenes: scenes::wrong_scenes(&standings, &stored_results),
+        stored_results,
         standings,
         suites: list_suites(&staff, &assignment.settings).await?,
         hides_groups: staff.is_hidden(&assignment).await?,

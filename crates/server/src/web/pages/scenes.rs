@@ -7,12 +7,19 @@ const MAX_NAMED: usize = 3;
 
 /// Returns the wrong scenes of all results that count, the most frequent first. Each has the logins of the students for
 /// whom it is wrong.
-pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, StoredResult>) -> Vec<(String, Vec<String>)> {
+pub(super) fn wrong_scenes(
+    standings: &[Standing],
+    stored_results: &BTreeMap<i64, StoredResult>,
+) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
         let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());
         let grade = grade.filter(|grade| grade.outcome.has_run());
-        for scene in grade.and_then(|grade| kept.get(&grade.result)).into_iter().flat_map(|kept| kept.failed.keys()) {
+        for scene in grade
+            .and_then(|grade| stored_results.get(&grade.result))
+            .into_iter()
+            .flat_map(|result| result.failed.keys())
+        {
             logins.entry(scene).or_default().push(standing.login.clone());
         }
     }

@@ -74,7 +74,7 @@ fn parse<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
 impl Grading {
     /// Returns the settings `before`, with the values of this form.
     pub(super) fn apply_to(&self, before: &Settings) -> Result<Settings, Problem> {
-        let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
+        let non_empty = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
         let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED_PREFIX) {
             Some(digest) => (before.suite.clone(), Some(digest.to_owned())),
             None => (self.suite.trim().to_owned(), None),
@@ -82,8 +82,8 @@ impl Grading {
         Ok(Settings {
             suite,
             suite_archive,
-            rules: chosen(&self.rules),
-            hints: chosen(&self.hints),
+            rules: non_empty(&self.rules),
+            hints: non_empty(&self.hints),
             smallest: self.smallest.is_some(),
             program: self.program.trim().to_owned(),
             seconds: parse("seconds", &self.seconds)?,

@@ -95,9 +95,10 @@ pub(super) async fn show_submission(member: Member, UrlPathParts { id, .. }: Url
         Some(name) => report::read_report(&member, &member.report(id, name).await?).await?,
         None => None,
     };
-    let shown = submission.grade.as_ref().and_then(|grade| VisibleGrade::from_text(grade.shown.as_deref()?));
-    let hidden = shown.filter(|_| member.is_staff).zip(assignment.as_ref());
-    let hidden = hidden.map(|(shown, assignment)| (verdict(&shown.code).to_owned(), assignment.published_at));
+    let visible_grade = submission.grade.as_ref().and_then(|grade| VisibleGrade::from_text(grade.shown.as_deref()?));
+    let hidden = visible_grade.filter(|_| member.is_staff).zip(assignment.as_ref());
+    let hidden =
+        hidden.map(|(visible_grade, assignment)| (verdict(&visible_grade.code).to_owned(), assignment.published_at));
     let is_own = submission.login == member.account.login;
     // Staff may have hidden the assignment after the student submitted.
     let work = match &assignment {

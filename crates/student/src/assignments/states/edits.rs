@@ -14,14 +14,14 @@ impl From<Edit> for StepMistake {
 }
 
 fn new_row(term_row: &'static TermRow, slip: Slip) -> MistakeRow<StepMistake> {
-    let kept = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
+    let leak = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
     MistakeRow {
         mistake: StepMistake::Edit(Edit { term: term_row.term, slip }),
-        id: kept(format!("{}-{}", term_row.id, slip.id())),
+        id: leak(format!("{}-{}", term_row.id, slip.id())),
         kind: RowKind::Wrong,
         area: term_row.area(),
-        summary: kept(format!("{} {}.", term_row.subject, slip.predicate(term_row))),
-        term: kept(slip.exact_form(term_row)),
+        summary: leak(format!("{} {}.", term_row.subject, slip.predicate(term_row))),
+        term: leak(slip.exact_form(term_row)),
     }
 }
 

@@ -111,13 +111,13 @@ impl<'a> LoggedRows<'a> {
 fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
     // The number of leading small coefficients; `LENGTH` if all are small.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
-    let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
+    let Some(coefficients) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
     let Some((size, bytes)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
     let Some(bytes) = bytes.get_mut(..8 * LENGTH) else { return };
     #[expect(clippy::cast_possible_truncation, reason = "at most six")]
     let count = (LENGTH - dropped) as u32;
     *size = count.to_le_bytes();
-    copy_little_endian(kept, bytes);
+    copy_little_endian(coefficients, bytes);
     *used += 4 + 8 * (LENGTH - dropped);
 }
 
