@@ -108,7 +108,7 @@ test("a wrong failsafe is found by keyboard", async () => {
   await close();
 });
 
-test("the picture stands in the first screen, near the difference, and no width is too small", async () => {
+test("the picture is on the first screen, near the difference, and no width is too small", async () => {
   const { page, complaints, close } = await openReport(writeReport("missed"));
   const top = () =>
     page.locator(".viewer canvas.picture").evaluate((canvas) => canvas.getBoundingClientRect().top + scrollY);

@@ -260,7 +260,7 @@ fn a_second_name_of_a_file_takes_nobodys_points() {
     };
     let fine = "run-time error";
     verdicts(&[("alice", fine), ("bob", fine), ("carol", fine)]);
-    // If both names are within the class, the owner is unknown. No submission loses points, and staff gets a warning.
+    // If both names are within the class, the owner is unknown. No submission loses points, and staff get a warning.
     link("class/carol", "class/thief");
     let run = verdicts(&[("alice", fine), ("bob", fine), ("carol", fine), ("thief", fine)]);
     assert!(run.err().contains("one file with several names (hard links): carol, thief"), "{}", run.shown());

@@ -207,11 +207,7 @@ fn hints_decide_how_much_a_report_tells_students() {
     };
     let [none, place, what, full] = ["none", "where", "what", "full"].map(|level| told_to("student", level));
     let staff = told_to("staff", "none");
-    assert_eq!(
-        (&staff["details"], &staff["explanations"]),
-        (&full["details"], &full["explanations"]),
-        "staff sees all"
-    );
+    assert_eq!((&staff["details"], &staff["explanations"]), (&full["details"], &full["explanations"]), "staff see all");
     assert_eq!((&none["summary"], &none["details"]), (&"the trace is wrong".into(), &serde_json::json!([])));
     assert_eq!(place["explanations"], serde_json::json!([]));
     assert!(place["details"][0].as_str().expect("a line").contains("edge"), "{place:#}");
@@ -342,7 +338,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         let rows = rows(&workspace.read("one/grades/grades.csv"));
         rows.into_iter().map(|(name, verdict, _)| format!("{name} {verdict}")).collect::<Vec<_>>()
     };
-    // If a file has two names, its owner is unknown. Both entries are graded, and staff gets a warning.
+    // If a file has two names, its owner is unknown. Both entries are graded, and staff get a warning.
     let passed_over = |name: &str| format!("{name} not graded");
     let graded = ["alice", "bob", "carol", "thief"].map(|name| format!("{name} run-time error"));
     let expected =

@@ -237,7 +237,7 @@ fn smallest_scenes_tell_students_what_their_group_does() {
     );
 }
 
-/// Staff sees the numbers of every scene. Students see what the suite allows, group by group. The assignment's own
+/// Staff see the numbers of every scene. Students see what the suite allows, group by group. The assignment's own
 /// `--hints` changes nothing for staff.
 #[test]
 fn staff_sees_everything_beside_pages_for_students() {

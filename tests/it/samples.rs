@@ -142,7 +142,7 @@ fn the_catalog_is_large_and_every_id_is_accepted() {
     assert!(count("wrong") >= 95 && count("variant") >= 14);
     assert_eq!(rows.len(), count("wrong") + count("variant"));
     let ids: BTreeSet<&str> = rows.iter().map(|row| row.id.as_str()).collect();
-    assert_eq!(ids.len(), rows.len(), "an id stands for two rows");
+    assert_eq!(ids.len(), rows.len(), "two rows have the same id");
     let table = sample().arg("--list").output().expect("the sample starts").stdout;
     let table = String::from_utf8(table).expect("text");
     for row in &rows {

@@ -98,7 +98,7 @@ pub struct Evidence {
     pub reference: Track,
     /// The trace's motion.
     pub submission: Track,
-    /// The measurements of all steps that both trace and reference have.
+    /// The measurements of all steps that both the trace and the reference have.
     pub steps: Vec<Step>,
     /// The steps shown in detail, in order.
     pub inspected: Vec<InspectedStep>,

@@ -15,8 +15,8 @@ pub fn to_printable(name: &OsStr) -> String {
     map_chunks(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
-/// Returns a file's name as [`to_printable`] does, but with escapes instead of combining marks. Different names then
-/// always have different texts.
+/// Returns a file's name as [`to_printable`] does, but with escapes instead of combining marks. The results for
+/// different names then always differ.
 pub fn to_exact(name: &OsStr) -> String {
     // Marks, parts of syllables, and characters that NFC would replace are escaped, so no two names become equal.
     map_chunks(name, |valid| escape(valid, |c| is_mark(c) || continues_syllable(c) || !c.nfc().eq([c])))

@@ -105,7 +105,7 @@ impl Grader<'_> {
         if self.options.uses_recordings { Rules::Parity } else { self.plan.rules }
     }
 
-    /// Returns texts for everything that a result depends on, except for the program and the scene.
+    /// Returns everything that a result depends on, except for the program and the scene, as strings for its key.
     fn conditions(&self) -> Vec<String> {
         let active = self.backend.layers().iter().filter(|report| report.active);
         vec![
@@ -124,7 +124,7 @@ pub(super) struct SharedGrading<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
-    /// The texts for everything that a result depends on, except for the program and the scene. They are parts of keys.
+    /// Everything that a result depends on, except for the program and the scene. These strings are parts of keys.
     conditions: Vec<String>,
     /// The keys of the results that this grading has stored.
     stored_keys: Mutex<BTreeSet<ResultKey>>,

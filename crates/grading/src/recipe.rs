@@ -61,9 +61,9 @@ impl Recipe<'_> {
         Ok(StagedProgram::from_unusable(path, reason))
     }
 
-    /// Copies the program from the file called `name` in a folder whose contents are not trusted, as
-    /// [`Recipe::stage_file`] does. A link out of the folder is rejected. A file is also rejected if `noted` says that
-    /// it belongs to another submission. If there is no file with this name, the only archive in the folder is used.
+    /// Copies the program from the file called `name` in a folder whose contents are not trusted. A link out of the
+    /// folder is rejected. A file is also rejected if `noted` says that it belongs to another submission. If there is
+    /// no file with this name, the only archive in the folder is used.
     ///
     /// # Errors
     /// Fails like [`Recipe::stage_file`].

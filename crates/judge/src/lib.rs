@@ -1,5 +1,5 @@
 //! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and the first
-//! difference between trace and reference.
+//! difference between the trace and the reference.
 //!
 //! The crate uses neither processes nor reports: it takes a scene and a reader, and returns findings. The rules
 //! are those of `oracle-behavior.md`, sections 4 to 6.

@@ -299,7 +299,7 @@ impl<S: Simd> Neg for Lanes<S> {
     }
 }
 
-/// A truth value per lane.
+/// A boolean per lane.
 #[derive(Debug, Clone, Copy)]
 pub struct Mask<S: Simd> {
     simd: S,

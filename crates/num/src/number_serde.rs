@@ -6,7 +6,7 @@ use super::{number_format::format_g, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;
 
-/// A number in its serialized form, in which `nan`, `-nan`, `inf` and `-inf` are texts.
+/// A number in its serialized form, in which `nan`, `-nan`, `inf` and `-inf` are strings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WrittenNumber(pub f64);
 

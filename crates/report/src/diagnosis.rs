@@ -106,7 +106,7 @@ impl Diagnosis {
     }
 }
 
-/// Renders the line of a trace. The line also stands for `more` traces with the same note.
+/// Renders the line of a trace. The line also represents `more` traces with the same note.
 fn render_head(case: &Case, more: usize, style: Style) -> String {
     let verdict =
         if case.accepted { style.paint(TextStyle::Right, "right") } else { style.paint(TextStyle::Wrong, "wrong") };

@@ -1,7 +1,7 @@
 //! Explanations of mistakes, as lines of text and as JSON.
 //!
-//! The functions show everything in an explanation. Parts that the reader may not see are removed before, in
-//! `mistakes::together::disclosure`. Data of a submission appear only as numbers.
+//! The functions show everything in an explanation. Before they are called, `mistakes::together::disclosure` removes
+//! the parts that the reader may not see. Data of a submission appear only as numbers.
 use super::{
     detect::format_polynomial,
     number::{format_count, format_exact, format_rounded_or},

@@ -41,7 +41,7 @@ pub const SCHEMA: u32 = 1;
 /// in the first record.
 pub const CHECK_SCHEMA: u32 = 2;
 
-/// Returns the text that stands for a value in JSON, for use in other formats; empty for a value with fields.
+/// Returns the string that represents a value in JSON, for use in other formats; empty for a value with fields.
 pub fn to_key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
     written.as_str().unwrap_or_default().to_owned()
@@ -53,7 +53,7 @@ pub(crate) fn to_document(value: &impl Serialize) -> String {
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
-/// Converts several numbers to the form in which JSON contains them.
+/// Converts several numbers to their form in JSON.
 pub fn to_written_numbers(values: &[f64]) -> Vec<WrittenNumber> {
     values.iter().copied().map(WrittenNumber).collect()
 }

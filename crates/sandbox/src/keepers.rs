@@ -177,7 +177,7 @@ impl RunSupervisor {
 }
 
 /// A keeper between two runs. When the value is dropped, others can use the keeper. The folder of the last run must be
-/// removed before that, because the pages of the folder count for the keeper's group.
+/// removed before that, because the pages of the folder count toward the memory of the keeper's group.
 #[derive(Debug)]
 pub(super) struct IdleKeeper {
     keeper: Option<Box<Keeper>>,

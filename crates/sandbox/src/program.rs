@@ -73,7 +73,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<ProgramFacts, Star
         (None, Some(system)) => return Err(StartProblem::WrongSystem { system: system.into() }),
         (None, None) => require_elf(&start).map(|()| ProgramFacts::default())?,
     };
-    // Only a program is helped by permission to execute it.
+    // Permission to execute a file helps only if the file is a program.
     if metadata.permissions().mode() & 0o111 == 0 { Err(StartProblem::NotExecutable) } else { Ok(facts) }
 }
 

@@ -1,4 +1,4 @@
-//! A running program. It can be stopped, and in the end there are its outcome and the files that it left.
+//! A running program. It can be stopped. After its end, its outcome and the files that it left can be read.
 
 use std::{
     fs::File,
@@ -22,7 +22,7 @@ use super::{
 /// The connection to the supervisor; `None` after the run.
 type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
-/// A running program. When the value is dropped, the program is stopped, and all its processes have ended.
+/// A running program. Dropping the value stops the program and ends all its processes.
 #[derive(Debug)]
 pub struct RunningProgram {
     state: RunState,
@@ -146,7 +146,8 @@ impl RunningProgram {
 pub struct RemainingFolder {
     memory_folder: Option<OpenFolder>,
     path: PathBuf,
-    // The host is dropped last. Otherwise the pages of a folder in memory would count for the keeper's next run.
+    // The host is dropped last. Otherwise the pages of a folder in memory would count toward the memory of the keeper's
+    // next run.
     _keeper: Option<IdleKeeper>,
 }
 

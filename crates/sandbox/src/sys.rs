@@ -47,7 +47,7 @@ pub(super) fn check_answer(answer: i32) -> io::Result<()> {
 pub(super) enum Fork {
     /// This is the child process.
     Child,
-    /// This is the parent process. The value is the child's process number.
+    /// This is the parent process. The value is the child's process ID.
     Parent(i32),
 }
 
@@ -220,7 +220,7 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     if pid <= 1 {
         return Err(io::Error::other(format!("refusing to signal {pid}: it is not a single process")));
     }
-    // SAFETY: all arguments are integers. The process number is positive, so that no process group is meant.
+    // SAFETY: all arguments are integers. The process ID is positive, so that no process group is meant.
     check_answer(unsafe { libc::kill(pid, signal) })
 }
 

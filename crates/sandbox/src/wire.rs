@@ -170,7 +170,7 @@ pub(super) struct Report {
     pub(super) survivors: u32,
 }
 
-/// The results of testing the layers. A text is the reason why a layer does not work.
+/// The results of testing the layers. A string is the reason why a layer does not work.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probe {
     pub(super) root: bool,

@@ -152,7 +152,7 @@ impl Outcome {
         Self {
             verdict: "judge error".to_owned(),
             code: JUDGE_ERROR.to_owned(),
-            summary: "the grader failed, which is not the submission's fault; staff is informed".to_owned(),
+            summary: "the grader failed, which is not the submission's fault; staff are informed".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seconds: "0".to_owned(),
             shown: Some(String::new()),

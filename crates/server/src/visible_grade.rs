@@ -239,7 +239,7 @@ mod tests {
         assert_eq!(shown(&hidden("AC", 90)), Some(empty_grade()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
-        assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
+        assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff see hidden scenes, too");
         assert_eq!(list_parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[],"scenes":"rw|e"}"#);
     }
 }

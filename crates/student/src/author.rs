@@ -33,7 +33,7 @@ impl Student {
         self
     }
 
-    /// Returns the mistakes. Free slots follow them in the array.
+    /// Returns the mistakes. In the array, free slots follow them.
     pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
         self.mistakes.iter().map_while(|mistake| *mistake)
     }

@@ -52,7 +52,7 @@ struct HessianSum<'a> {
     world: &'a World,
     size: usize,
     entries: Vec<f64>,
-    /// Whether derivatives by velocities are added instead of those by positions.
+    /// Whether derivatives with respect to velocities are added instead of those with respect to positions.
     uses_velocities: bool,
     weight: f64,
 }
@@ -189,7 +189,7 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     })
 }
 
-/// Returns the derivatives of a spring's damping force by positions.
+/// Returns the derivatives of a spring's damping force with respect to positions.
 fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let makes = |mistake: StepMistake| world.student.makes(mistake);
@@ -211,7 +211,7 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     build_block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
 }
 
-/// Returns the derivatives of a spring's damping force by velocities.
+/// Returns the derivatives of a spring's damping force with respect to velocities.
 fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let edge = world.scene.edges[edge];

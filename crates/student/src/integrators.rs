@@ -11,9 +11,8 @@ use super::{
 /// The maximum number of iterations of Newton's method. The course's program would continue forever.
 const MAX_NEWTON_ITERATIONS: u32 = 100_000;
 
-/// The maximum number of iterations of Newton's method in a program with a mistake. Such a program converges soon or
-/// The maximum number of iterations with a mistake. With wrong second derivatives the iterations jump about, and then
-/// converge by chance or reach values that are not finite.
+/// The maximum number of iterations of Newton's method in a program with a mistake. With wrong second derivatives the
+/// iterations jump about, and then converge by chance or reach values that are not finite.
 const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 500;
 
 /// Advances the state by one step without collisions. `solves` counts the systems that are solved.

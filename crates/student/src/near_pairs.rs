@@ -15,7 +15,7 @@ pub struct NearPairSearch<'a> {
     ranks: Vec<usize>,
 }
 
-/// A body's bounding box, as its lower and upper corner.
+/// A body's bounding box, as its lower and upper corners.
 type BoundingBox = [Vec2; 2];
 
 impl<'a> NearPairSearch<'a> {

@@ -16,7 +16,7 @@ use fosssim_num::vector::Vec2;
 /// The areas of the assignment whose mistakes this module simulates.
 const MODULE_AREAS: &[Area] = &[Area::Trace];
 
-/// The numbers of one record, with this student's mistakes of logging. A list is `None` if scenes of this collision
+/// The numbers of one record, with this student's mistakes in logging. A list is `None` if scenes of this collision
 /// type do not have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {

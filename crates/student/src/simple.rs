@@ -109,7 +109,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.response, Slip::Inelastic) => 1.0,
             () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
             () if self.makes(kind.response, Slip::RestitutionTwice) => 2.0 * restitution,
-            // Like in the reference, the half of `1 + COR` is doubled.
+            // As in the reference, half of `1 + COR` is doubled.
             () => 2.0 * ((1.0 + restitution) / 2.0),
         }
     }

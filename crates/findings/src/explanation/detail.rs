@@ -53,10 +53,12 @@ pub enum PolynomialDetail {
     SinglePrecision,
     /// One polynomial of the pair is used instead of another.
     InPlaceOf {
-        /// The polynomial that is used by mistake.
-        stands: Subject,
-        /// The polynomial that should be used instead.
-        belongs: Subject,
+        /// The polynomial that the program uses.
+        #[serde(rename = "stands")]
+        used: Subject,
+        /// The polynomial that the program should use.
+        #[serde(rename = "belongs")]
+        expected: Subject,
     },
     /// The coefficients of two powers of t are exchanged.
     Exchanged {

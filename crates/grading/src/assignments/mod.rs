@@ -92,7 +92,7 @@ pub fn suite_names() -> impl Iterator<Item = String> {
     })
 }
 
-/// Returns the end of a message about an unknown suite, as [`suggestions::suggest`] does.
+/// Returns the end of a message about an unknown suite, which suggests similar names ([`suggestions::suggest`]).
 pub fn suggest(name: &str) -> String {
     let suites: Vec<String> = suite_names().collect();
     suggestions::suggest(name, suites.iter().filter_map(|suites| suites.split('@').next()))

@@ -268,7 +268,7 @@ fn a_crash_in_the_failsafe_is_located() {
     let silent = stage.grade_with(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
     assert!(
         silent.located_failure.is_some() && disclosed_grade(&grade).located_failure.is_some(),
-        "staff is told everything"
+        "staff see everything"
     );
     assert_eq!(disclosed_grade(&silent).located_failure, None, "hints tell students less");
     assert_eq!(stage.grade_with(&suite("what"), &["right"]).remove(0).located_failure, None);

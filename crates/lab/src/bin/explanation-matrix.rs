@@ -115,7 +115,7 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
         match explain_together(traces, &[]).into_iter().next() {
             Some(first) if first.key == row.id => {}
             Some(first) if first.same_as.iter().any(|id| id == row.id) => {
-                confused.push(format!("    {}: can't be told from {}", row.id, first.key));
+                confused.push(format!("    {}: can't be distinguished from {}", row.id, first.key));
             }
             Some(first) => confused.push(format!("    {}: TAKEN FOR {}", row.id, first.key)),
             None => confused.push(format!("    {}: nothing", row.id)),

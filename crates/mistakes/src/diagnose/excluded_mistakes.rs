@@ -102,7 +102,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make. Such a mistake is in code that a student of this milestone does not write, or other wrong
-/// traces contradict it. The program may also be right on a scene on which the mistake would be visible
+/// traces contradict it. The program may also be right on a scene in which the mistake would show
 /// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
 /// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
 /// such values.

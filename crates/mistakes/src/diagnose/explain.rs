@@ -26,10 +26,10 @@ const MAX_PAIRS: usize = 400_000;
 /// is wrong, or if no known mistake explains it.
 ///
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
-/// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
-/// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
-/// content are accepted. Bytes after the first 64 MiB, and an incomplete record, are ignored. For a trace that seems to
-/// be from another scene, the only explanation asks whether the trace belongs to this one
+/// Otherwise the explanations of polynomials come first: those that reproduce all their samples, then those that
+/// reproduce a part. The judge decides whether a trace is right: callers should pass traces that the fair rules reject.
+/// Traces of any content are accepted. Bytes after the first 64 MiB, and an incomplete record, are ignored. For a trace
+/// that seems to be from another scene, the only explanation asks whether the trace belongs to this one
 /// ([`Explanation::is_other_scene`]).
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::from_trace(trace))
@@ -117,7 +117,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all
 }
 
-/// Adds, once, a note after an explanation's formulas, so that the report explains their letters.
+/// Adds a note after an explanation's formulas, at most once, so that the report explains their letters.
 fn add_letter_note(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;

@@ -41,8 +41,8 @@ pub(super) fn changed_term(row: &Row) -> Term {
     }
 }
 
-/// Returns the milestone of a submission that runs on `scenes`, which is the first whose programs know all of them.
-/// Returns `None` if there are no scenes, or if no milestone knows all of them.
+/// Returns the milestone of a submission that runs on `scenes`: the first whose programs accept all of them. Returns
+/// `None` if there are no scenes, or if no milestone's programs accept all of them.
 pub fn find_milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let assignments = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();
     let common = scenes

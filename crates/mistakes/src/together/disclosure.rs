@@ -8,8 +8,8 @@ use fosssim_findings::{
 };
 use fosssim_student::find;
 
-/// Limits a result to a hint level. The verdict, its reason and the difference of the rule books stay at all levels,
-/// but at [`Hints::None`] the fault of a wrong trace is removed.
+/// Limits a result to a hint level. The verdict, its reason and the difference between the rule books stay at all
+/// levels, but at [`Hints::None`] the fault of a wrong trace is removed.
 pub fn limit_result(hints: Hints, result: &mut SceneResult) {
     if hints == Hints::Full {
         return;
@@ -36,7 +36,7 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // A value that is not finite shows where the fault is, and no guess about the mistake.
+        // A value that is not finite shows where the fault is, but contains no guess about the mistake.
         Hints::Where => explanations.into_iter().filter(Explanation::reports_non_finite_value).collect(),
         Hints::What => explanations
             .into_iter()

@@ -35,9 +35,9 @@ pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(disclosed)
 }
 
-/// Returns only the part of the grade that students see immediately. Points and verdict are those of the remaining
-/// groups, and hints limit the reports on their scenes ([`disclosed_grade`]). Unless the suite shows the output of
-/// programs, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
+/// Returns only the part of the grade that students see immediately. The points and the verdict are those of the
+/// remaining groups, and hints limit the reports on their scenes ([`disclosed_grade`]). Unless the suite shows the
+/// programs' output, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
 pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
         return disclosed_grade(grade);
@@ -64,9 +64,9 @@ pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(visible)
 }
 
-/// Returns the smallest scenes that students may see. They are made from a scene of a visible group, with only the
-/// details that its hints allow. There are none if the suite withholds output of programs, because smallest scenes
-/// depend on it.
+/// Returns the smallest scenes that students may see. Each is made from a scene of a visible group, and has only the
+/// details that the group's hints allow. There are none if the suite withholds the programs' output, because smallest
+/// scenes depend on it.
 fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
     let disclosed = |small: &SmallestScene| {
         let is_origin = |scene: &SceneGrade| scene.scene == small.origin;

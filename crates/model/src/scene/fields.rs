@@ -166,7 +166,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         None
     }
 
-    /// Returns a required truth value.
+    /// Returns the value of a required boolean.
     pub(super) fn boolean(&mut self, name: &str) -> Option<bool> {
         let attribute = self.require(name, "0 or 1")?;
         let text = self.single_line_text(attribute)?;

@@ -114,7 +114,7 @@ fn syntax_problem(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> 
     let (from, message, help) = if let Some(other) = before[bare..].rfind('<') {
         (bare + other, "a `<`".to_owned(), "is the `>` of this element missing?")
     } else if before[word..].starts_with('/') {
-        (word, "a `/`".to_owned(), "`/` stands directly before `>`")
+        (word, "a `/`".to_owned(), "`/` must be directly before `>`")
     } else {
         (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
     };

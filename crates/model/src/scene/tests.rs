@@ -397,7 +397,7 @@ fn broken_tags() {
     );
     says("<dragdamping b/>", &format!("4:14: `=` and a value are missing after `b` in `dragdamping` {how}"));
     says("<dragdamping b= />", &format!("4:14: a value is missing after `b=` in `dragdamping` {how}"));
-    says("<dragdamping b='1' / >", "4:20: a `/` in `dragdamping` (`/` stands directly before `>`)");
+    says("<dragdamping b='1' / >", "4:20: a `/` in `dragdamping` (`/` must be directly before `>`)");
     says(
         "<dragdamping b='1'\n<dragdamping b='1'/>",
         "5:1: a `<` in `dragdamping` (is the `>` of this element missing?)",

@@ -41,7 +41,8 @@ pub(crate) struct SearchOutcome {
     pub(crate) answer: Answer,
     /// The time before which a polynomial is always negative.
     pub(crate) not_before: f64,
-    /// For [`Answer::Never`], the number of units of the bounds for which the answer is proved to be right.
+    /// For [`Answer::Never`], the answer is proved to be right if each coefficient is wrong by at most `slack` units of
+    /// its bound.
     pub(crate) slack: f64,
 }
 

@@ -94,9 +94,9 @@ impl Problem {
         })
     }
 
-    /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step. The second value is
-    /// the number of further units of the bounds for which the result stays right. Returns `None` if no polynomial
-    /// proves this. A problem without polynomials never hits.
+    /// Returns the level of a proof, by one polynomial alone, that there is no hit within the step. The second value
+    /// says by how many units of their bounds the coefficients may additionally be wrong. Returns `None` if no
+    /// polynomial proves this. A problem without polynomials never hits.
     #[inline]
     pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -256,7 +256,7 @@ impl ExactPolynomial {
         values
     }
 
-    /// Returns the number of units of the bound by which the value at `t` in `[0, 1]` exceeds zero, at least 0.
+    /// Returns by how many units of the bound the value at `t` in `[0, 1]` exceeds zero, or 0 if it does not.
     fn slack_at(&self, t: f64) -> f64 {
         let (value, error) = self.value_at(t);
         if value > error { slack(value - error, self.bound) } else { 0.0 }

@@ -124,7 +124,7 @@ impl Check<'_> {
     }
 }
 
-/// Counts how often the original would print each of its messages. The keys are the texts for which graders search in
+/// Counts how often the original would print each of its messages. The keys are the strings that graders search for in
 /// its output.
 fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
@@ -149,7 +149,7 @@ fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 
 view! {
     /// The report on one trace. Within one version, fields may be added, but the meaning of a field never changes.
-    /// Numbers that are not finite are written as the texts nan, -nan, inf and -inf.
+    /// Numbers that are not finite are written as the strings nan, -nan, inf and -inf.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CheckView<'a> from check: Check<'a> {
         /// The version of the schema.

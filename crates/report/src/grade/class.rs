@@ -195,9 +195,9 @@ pub(crate) struct SharedMistake {
     pub(crate) members: Vec<usize>,
 }
 
-/// Returns the likely mistakes, the most frequent first. Each has the submissions that make it, and says only what is
-/// true of all of them: each unwritten stage is an entry, and polynomials that nothing explains are left out, because
-/// they may be wrong for different reasons.
+/// Returns the likely mistakes, the most frequent first. Each is listed with the submissions that make it, and says
+/// only what is true of all of them: each unwritten stage is an entry, and polynomials that nothing explains are left
+/// out, because they may be wrong for different reasons.
 pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {

@@ -73,8 +73,7 @@ struct Cluster<'a> {
     /// A scene in which the members' mistake is visible, and the scene's URL.
     scene: Option<(String, String)>,
     note: Option<&'a CourseNote>,
-    /// The smallest scene on which the mistake is visible with a member's program. Teachers can demonstrate it in
-    /// class.
+    /// The smallest scene in which a member's program shows the mistake. Teachers can demonstrate it in class.
     smallest: Option<&'a SmallestScene>,
     /// The first scene that all members fail, if they share no named mistake.
     first_failed_scene: Option<String>,
@@ -112,8 +111,8 @@ impl ClassContent<'_> {
         mistakes.map(|(mistake, _)| format!("m{mistake}")).collect::<Vec<_>>().join(" ")
     }
 
-    /// Returns the mistakes that several submissions make, the most frequent first. Groups of submissions that no
-    /// mistake explains, and that fail the same scenes for the same reasons, follow.
+    /// Returns the mistakes that several submissions make, the most frequent first. Then come groups of submissions
+    /// that no mistake explains, and that fail the same scenes for the same reasons.
     fn clusters(&self) -> Vec<Cluster<'_>> {
         let grades = self.class.grades;
         let named = self.mistakes.iter().enumerate().filter(|(_, mistake)| mistake.members.len() > 1);
@@ -204,7 +203,8 @@ fn describe_reason(grade: &Grade) -> String {
     }
 }
 
-/// Returns the reasons why the rule books differ. Each has the submissions concerned, and their numbers of scenes.
+/// Returns the reasons why the rule books differ, each with the submissions that it concerns and the number of scenes
+/// in each submission.
 fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {

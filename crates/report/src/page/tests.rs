@@ -296,7 +296,7 @@ fn hidden_details_are_not_in_the_file() {
     let id = "pe-linear-one-ab";
     let pages = [Hints::None, Hints::Where, Hints::What, Hints::Full].map(|hints| graded(&scene, id, hints));
     let [[staff, none], [_, place], [_, what], [_, full]] = pages;
-    assert_eq!(staff, full, "staff sees as much as a student who is told everything");
+    assert_eq!(staff, full, "staff see as much as a student with full hints");
     let script = |html: &str| html.matches("<script>").count();
     assert!([&none, &place, &what, &full].iter().all(|html| script(html) == 1));
     // The viewer's own text and the style sheet are the same for all.

@@ -36,8 +36,8 @@ static ATTACK_SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/a
 
 /// The environment variable without which the hostile programs do nothing.
 const PERMIT_VARIABLE: &str = "FOSSSIM_ATTACK";
-/// The environment variables that give a hostile program the path of the grader's program, and the number of the
-/// grader's process group.
+/// The environment variables that give a hostile program the path of the grader's program, and the ID of the grader's
+/// process group.
 const GRADER_VARIABLE: &str = "FOSSSIM_GRADER";
 const GROUP_VARIABLE: &str = "FOSSSIM_GRADER_GROUP";
 /// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have killed the attack.

@@ -172,7 +172,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
 /// Filters that were compiled before the child existed, and the purpose for which they were compiled.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
-/// Returns the purpose of the filters for a child with the process number `number`.
+/// Returns the purpose of the filters for a child with the process ID `number`.
 pub(super) fn find_purpose(order: &RunOrder, own_user: bool, entry_file: Option<u64>, number: i32) -> Purpose {
     let layers = order.layers;
     Purpose {

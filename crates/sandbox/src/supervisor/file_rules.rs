@@ -123,7 +123,7 @@ impl AllowedPlaces {
         allowed
     }
 
-    /// Moves the files to descriptor numbers that no program may use, so that they do not count for the limit of a
+    /// Moves the files to descriptor numbers that no program may use, so that they do not count toward the limit of a
     /// child. Returns `None` if this process may not use that many numbers.
     pub(super) fn with_high_numbers(self) -> Option<Self> {
         const FIRST_DESCRIPTOR: u32 = 800;
@@ -173,7 +173,7 @@ pub(super) fn build_ruleset(
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(from_ruleset_error)
 }
 
-/// Adds the files in the process's own entry in `/proc` that it may read. They are added one by one, because the entry
+/// Adds the files in the process's own `/proc` entry that it may read. They are added one by one, because the entry
 /// also shows sockets, mounts and groups of the host, and which pages of a file are in memory. Only the child itself
 /// can do this.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {

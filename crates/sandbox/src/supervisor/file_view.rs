@@ -2,8 +2,8 @@
 //! usual paths.
 //!
 //! The places that Landlock allows (see `file_rules.rs`) are visible. Except for the working folder, they are
-//! read-only. Other files of the host, and their names, are invisible. Folders in memory such as `/tmp` and
-//! `/dev/shm` cannot be written, because files there would not count for any process.
+//! read-only. Other files of the host, and their names, are invisible. Folders in memory such as `/tmp` and `/dev/shm`
+//! cannot be written, because files there would not count toward the memory of any process.
 
 use std::{
     collections::VecDeque,
@@ -157,7 +157,7 @@ fn hide_own_files(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Covers a visible file or folder by an empty one.
+/// Covers a visible file or folder with an empty one.
 fn hide(path: &Path) -> io::Result<()> {
     let Ok(metadata) = path.symlink_metadata() else { return Ok(()) };
     if metadata.is_dir() {

@@ -16,7 +16,8 @@ use seccompiler::{
 
 use super::calls::{self, NamedCall};
 
-/// The value that stands for "announce" while a filter is compiled, because the compiler does not know that action.
+/// A placeholder for the action "announce" while a filter is compiled, because the compiler does not support that
+/// action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
 const RETURN_CONSTANT: u16 = 0x06;
 const ACTION_ANNOUNCE: u32 = 0x7fc0_0000;
@@ -57,7 +58,7 @@ pub(super) const LOCK_COMMANDS: [u64; 6] = [
     libc::F_OFD_SETLKW as u64,
 ];
 
-/// Calls that query a process. Their first argument is the number of the process.
+/// The calls that query a process. Their first argument is the process ID.
 const PROCESS_QUERIES: [i64; 6] = [
     libc::SYS_getsid,
     libc::SYS_getpgid,
@@ -227,8 +228,8 @@ fn denials_for_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<Seccomp
     }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in PROCESS_QUERIES {
-            // The argument may also be the number of a thread. If this call does not exist, the C library works without
-            // it.
+            // The argument may also be a thread ID. The C library does not need `sched_getaffinity`, so that call fails
+            // as if it did not exist.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
             refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
         }
@@ -272,7 +273,7 @@ fn forbidden_rules(purpose: Purpose) -> io::Result<CallRules> {
     Ok(rules)
 }
 
-/// Returns the action that stands for an announcement while a filter is compiled.
+/// Returns the placeholder for the action "announce" while a filter is compiled.
 fn announce() -> SeccompAction {
     SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }

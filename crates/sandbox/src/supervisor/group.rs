@@ -57,8 +57,8 @@ impl Group {
     ///
     /// # Errors
     ///
-    /// Fails if the grader may create a group in no hierarchy. Also fails if it may create one only in version 2, and
-    /// the kernel is older than 5.14, so that it cannot kill a group.
+    /// Fails if the grader may not create a group in any hierarchy. Also fails if it may create one only in version 2,
+    /// and the kernel is older than 5.14, so that it cannot kill a group.
     pub(super) fn create(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;

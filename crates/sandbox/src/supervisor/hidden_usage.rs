@@ -1,5 +1,5 @@
-//! Measures files and memory of processes that are neither in the folder nor in the count of resident memory. These are
-//! files without a name that are open, mapped or executed, and mapped memory that is not resident for any process.
+//! Measures the files and the memory of processes that are counted neither in the folder nor as resident memory. These
+//! are files without a name that are open, mapped or executed, and mapped memory that is not resident for any process.
 
 use std::{
     collections::BTreeSet,
@@ -11,7 +11,7 @@ use std::{
 use super::folder::BLOCK_BYTES;
 use crate::machine;
 
-/// The text by which the kernel marks a file that no longer has a name.
+/// The suffix with which the kernel marks a file that no longer has a name.
 const DELETED_SUFFIX: &[u8] = b" (deleted)";
 /// The names of shared memory that is not in a folder.
 const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];

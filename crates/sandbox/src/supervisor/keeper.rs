@@ -9,7 +9,7 @@
 //! the previous run. After a run that did not end by itself, the grader does not use the keeper again.
 //!
 //! A guardian process outside of the namespaces holds the user and the control group until the keeper has ended. If the
-//! guardian ends, the keeper ends, and with the keeper every run.
+//! guardian ends, the keeper and its runs end as well.
 
 use std::{
     fs::File,

@@ -59,7 +59,7 @@ enum StartFolder {
     Held(u64),
 }
 
-/// Returns the file that the thread has open under this number. It is opened again by its current name.
+/// Returns the file that the thread has open as this descriptor. It is opened again by its current name.
 fn reopen_descriptor(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
     open_beneath(&target, folder, root).map_err(|_| libc::EPERM)

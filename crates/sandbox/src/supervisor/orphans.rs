@@ -9,7 +9,7 @@ use super::{
 
 /// Kills the processes that a lost supervisor may have left behind. These are the processes in its child's session, and
 /// those of the child's own user. If there was a process namespace, its processes were killed with it, and its session
-/// numbers are not valid here.
+/// IDs are not valid here.
 pub(crate) fn kill_orphans(session: Option<i32>, user: Option<u32>) {
     const MAX_ATTEMPTS: u32 = 1000;
     // The lock on the user ended with the supervisor, so another run may already have this user.

@@ -40,8 +40,8 @@ pub(super) struct PreparedRun {
 }
 
 impl PreparedRun {
-    /// Makes the preparations for orders like `order`. Their programs have the process number `number`. The process
-    /// must have only one thread.
+    /// Makes the preparations for orders like `order`. Their programs have the process ID `number`. The process must
+    /// have only one thread.
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || file_rules::AllowedPlaces::for_order(order).with_high_numbers();
         let purpose = child::find_purpose(order, order.layers.own_user, None, number);

@@ -50,8 +50,8 @@ pub(super) struct Usage {
     pub(super) threads: u64,
 }
 
-/// Returns what the process `pid` uses. With `tree`, what all other descendants of this process use is included. On
-/// every Linux, `/proc` counts time in hundredths of a second.
+/// Returns what the process `pid` uses. With `tree`, the result includes what all other descendants of this process
+/// use. On every Linux, `/proc` counts time in hundredths of a second.
 pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
@@ -93,7 +93,7 @@ pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     stats.iter().filter_map(living).collect()
 }
 
-/// Returns the numbers of a process's threads.
+/// Returns the IDs of a process's threads.
 pub(crate) fn list_threads(pid: i32) -> impl Iterator<Item = i32> {
     list_numbers(format!("/proc/{pid}/task"))
 }
@@ -201,7 +201,7 @@ fn list_descendants() -> Vec<ProcessStat> {
     let mut stats: Vec<ProcessStat> = list_all().filter_map(read_process).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
-    // Parents may have larger numbers than their children, so this is repeated until no process is added.
+    // Parents may have larger IDs than their children, so this is repeated until no process is added.
     loop {
         let (mut mine, rest): (Vec<ProcessStat>, Vec<ProcessStat>) =
             stats.iter().partition(|stat| family.contains(&stat.parent));
@@ -216,7 +216,7 @@ fn list_descendants() -> Vec<ProcessStat> {
     found
 }
 
-/// Returns the numbers of all processes.
+/// Returns the IDs of all processes.
 pub(crate) fn list_all() -> impl Iterator<Item = i32> {
     list_numbers("/proc")
 }

@@ -35,7 +35,7 @@ use crate::{
 
 /// The time between two checks of clocks and counters. A check takes about ten microseconds.
 const TICK_INTERVAL: Duration = Duration::from_millis(10);
-/// The checks of the folder may take the total time divided by this number.
+/// The reciprocal of the share of the total time that checks of the folder may take.
 const FOLDER_SHARE: u32 = 20;
 
 /// Reads an order from standard input, supervises its run, and answers on standard output.
@@ -214,7 +214,7 @@ impl Run {
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // The process number is valid until the process is reaped.
+            // The process ID is valid until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::kill_all(user, self.order.layers.namespaces, |process| {
@@ -241,13 +241,13 @@ impl Run {
             folder::change_owner(self.folder.as_fd(), *owner, *group)
                 .map_err(failure_at("restore the folder's owner"))?;
         }
-        // The time for cleaning up counts for the run.
+        // The time for cleaning up counts toward the run's time.
         let wall = self.start_time.elapsed();
         watched.map_err(failure_at("watch the program"))?;
         if self.is_orphaned {
             return Ok(None);
         }
-        // Most programs print nothing. Searching for a message is slow, because it asks the processor for its features
+        // Most programs print nothing. Searching for a message is slow, because it queries the processor's features
         // several times.
         let received = Some(&self.received_bytes[..]).filter(|received| !received.is_empty());
         let failure: Option<Failure> = received.and_then(|received| serde_json::from_slice(received).ok());

@@ -36,8 +36,8 @@ pub(super) fn claim_slot() -> io::Result<UserSlot> {
     claim_from_range(&lock_folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
 }
 
-/// Returns the id of a run whose supervisor was lost; `None` if another run has claimed it. In that case, it had no
-/// processes any more.
+/// Returns the id of a run whose supervisor was lost; `None` if another run has claimed it. In that case, no processes
+/// of the lost run remained.
 pub(super) fn reclaim_slot(user: u32) -> Option<UserSlot> {
     reclaim_in(&lock_folder().ok()?, user)
 }

@@ -23,8 +23,8 @@ pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
 /// Renders the statement for an engine. `{now}` is the engine's clock, and `{int}`, `{id}`, `{strict}` and `{queue}`
 /// are words of table definitions. `{for update}`, `{for removal}` and `{skip locked}` lock the selected rows. `{each}`
 /// lists the rows of a JSON array, which is passed as a value and read as `wanted.value`. `{strpos}` finds the position
-/// of one text in another, and `{quoted}` turns a text into JSON. For PostgreSQL, placeholders are numbered. Statements
-/// contain no other braces or question marks: values are never part of a statement's text.
+/// of one string in another, and `{quoted}` converts a string to JSON. For PostgreSQL, placeholders are numbered.
+/// Statements contain no other braces or question marks: values are never part of a statement's text.
 pub(super) fn render_statement(statement: &str, dialect: Dialect) -> String {
     let substitutes: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [

@@ -117,7 +117,7 @@ pub struct Submission {
     /// them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_withheld: bool,
-    /// Whether staff has published the assignment's hidden groups.
+    /// Whether staff have published the assignment's hidden groups.
     #[serde(skip)]
     pub(super) is_published: bool,
     /// The last error of the grader on this submission. Only staff see it.

@@ -198,8 +198,8 @@ struct Claims {
     email: Option<String>,
 }
 
-/// Returns the name of the key with which a message claims to be signed.
-pub(super) fn read_key_name(token: &str) -> Result<String, Rejection> {
+/// Returns the ID of the key with which a message claims to be signed.
+pub(super) fn read_key_id(token: &str) -> Result<String, Rejection> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
     ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)

@@ -59,7 +59,7 @@ impl Lti {
     ///
     /// Fails if the message is rejected. The error is the reason.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
-        let kid = message::read_key_name(token)?;
+        let kid = message::read_key_id(token)?;
         let key = self.platform_keys.fetch(&self.client, platform, &kid).await?;
         message::read(platform, token, &key, nonce)
     }

@@ -34,7 +34,7 @@ fn derivative(p: &[f64; 3]) -> [f64; 2] {
     [2.0 * p[0], p[1]]
 }
 
-/// Returns the overlap with the line. `square` is the square of the sum of the radii.
+/// Returns the overlap polynomial for the infinite line. `square` is the square of the sum of the radii.
 pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();
@@ -44,7 +44,7 @@ pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     result
 }
 
-/// Returns the approach, whose coefficients are all mathematically right.
+/// Returns the approach polynomial. All its coefficients are mathematically right.
 pub fn quintic(bodies: &[PointMotion; 3]) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let first = product(&derivative(&q), &g);

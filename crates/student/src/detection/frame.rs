@@ -10,7 +10,7 @@ const MODULE_AREAS: &[Area] = &[Area::Handover];
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
 /// The cosine and sine of the angle by which a program rotates its coordinates. The angle of the right triangle with
-/// the sides 3, 4 and 5 would not do, because products with its cosine and sine are often exact.
+/// the sides 3, 4 and 5 is unsuitable, because products with its cosine and sine are often exact.
 const ROTATION: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
 /// The coordinate axes in which a program computes.

@@ -164,7 +164,7 @@ struct IndexSlip {
 enum RadiusSlip {
     /// The radius of the next particle is read.
     Next,
-    /// The radius is read at the number of the other object.
+    /// The radius is read at the index of the other object.
     OfObject,
 }
 
@@ -192,8 +192,8 @@ fn uses_prediction(student: Student, kind: usize) -> bool {
     student.makes(all[kind])
 }
 
-/// Returns the axes in which the student computes with a pair. No formulas support a moving half-plane, so the axes do
-/// not move with its particle.
+/// Returns the axes in which the student computes with a pair. The formulas do not support a moving half-plane, so for
+/// a pair with a half-plane the axes do not move with the particle.
 fn pair_axes(student: Student, pair: Pair) -> Axes {
     match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,

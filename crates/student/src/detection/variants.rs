@@ -9,7 +9,7 @@ use super::{
 };
 use crate::{Mistake, author::Student};
 
-/// Returns the polynomials that must be positive together, highest power first, right except for round-off.
+/// Returns the polynomials that must be positive together, highest power first. They are right except for round-off.
 pub fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let mut lists = reference_polynomials(motion);
     if let (true, PairMotion::Edge { center, ends, radii }) = (student.has_right_approach(), motion) {
@@ -20,7 +20,7 @@ pub fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
             (Mistake::ExtendedPrecision, _) => lists = arithmetic::polynomials::<WideNumber>(motion),
             (Mistake::FusedArithmetic, _) => lists = arithmetic::polynomials::<FusedDouble>(motion),
             (Mistake::WideArithmetic, _) => lists[0] = arithmetic::polynomials::<WideNumber>(motion).swap_remove(0),
-            // The approach of a particle and an edge stays the supplied one.
+            // The approach of a particle and an edge is still the supplied one.
             (Mistake::InterpolatedAll, _) => {
                 lists.iter_mut().zip(basis::polynomials(motion)).for_each(|(list, own)| *list = own);
             }

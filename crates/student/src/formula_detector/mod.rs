@@ -33,7 +33,7 @@ pub fn find_formula(sentence: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Returns whether a word of only this letter does not name a quantity. Digits are checked before.
+/// Returns whether a word of only this letter does not name a quantity. Digits are handled first.
 const fn is_plain_letter(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }

@@ -104,7 +104,7 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::Holds(f64::NEG_INFINITY),
         PolynomialDetail::Every(-0.0),
         PolynomialDetail::SinglePrecision,
-        PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::EdgeApproach },
+        PolynomialDetail::InPlaceOf { used: Subject::AlphaHigh, expected: Subject::EdgeApproach },
         PolynomialDetail::LastOnly(1),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(1.0 / 3.0),

@@ -1,4 +1,4 @@
-//! Finds the rows of the catalog whose mistakes can be visible on a scene. Only these are tried.
+//! Finds the rows of the catalog whose mistakes can show in a scene. Only these are tried.
 use crate::diagnose::student_code::{changed_term, is_written_by_student};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
@@ -39,7 +39,7 @@ pub(super) const fn is_state_mistake(row: &Row) -> bool {
 }
 
 /// Returns whether a program with this mistake may write a different trace. A mistake is excluded only if the scene
-/// lacks a part: a stage of a step, or a kind of pair.
+/// lacks the stage of a step or the kind of pair that it concerns.
 pub fn may_change_trace(scene: &Scene, row: &Row) -> bool {
     is_applicable(scene, &pairs(scene).counts(), row)
 }
@@ -60,7 +60,7 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
     has_stage && row.pair_kind().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// Returns whether a mistake in forces, integrators, penalties or simple responses may be visible on the scene.
+/// Returns whether a mistake in forces, integrators, penalties or simple responses may show in the scene.
 fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = changed_term(row);
     let has_force = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);

@@ -50,7 +50,7 @@ pub(super) fn find_row_set(
     Some(found)
 }
 
-/// Returns whether a row stands for a function that was not written.
+/// Returns whether a row describes a function that was not written.
 pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
     rank_plausibility(row) == 0
 }
@@ -232,8 +232,7 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Returns the rows of empty stages that may be visible on the scene. An unwritten detection logs nothing, or
-    /// zeros.
+    /// Returns the rows of empty stages that may show in the scene. An unwritten detection logs nothing, or zeros.
     fn empty_stage_rows(&self) -> Vec<&'static Row> {
         // For bodies at rest the approach polynomial is zero, too, but not the overlap polynomial before it.
         let logs_zeros = self.scan.wrong_steps.iter().any(|kept| {

@@ -38,7 +38,7 @@ use trials::Trials;
 /// Returns the mistakes of the catalog that explain a trace.
 ///
 /// The result is empty if all steps are right, or if no mistake reproduces at least half of the wrong steps. It is also
-/// empty if a correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three
+/// empty if a correct variant reproduces these steps. Otherwise it holds one explanation, or those of up to three
 /// mistakes that reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same
 /// steps are in [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order:
 /// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.

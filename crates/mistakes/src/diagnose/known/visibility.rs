@@ -1,4 +1,4 @@
-//! Decides whether a mistake would show on a scene. A program that is right on such a scene does not make the mistake.
+//! Decides whether a mistake would show in a scene. A program that is right on such a scene does not make the mistake.
 use super::{
     applicable_rows::{is_state_mistake, may_change_trace},
     resimulate::{resimulate, step_work},
@@ -35,8 +35,8 @@ pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     find_effect(scene, key, &Cell::new(0)) != MistakeEffect::Hidden
 }
 
-/// Returns the effect of the mistake on the scene, as [`mistake_is_visible`] does. `work` counts the work of several
-/// calls, which is limited together.
+/// Returns the effect of the mistake on what a program logs for the scene. `work` counts the computed polynomials of
+/// several calls, which share one limit.
 pub(in crate::diagnose) fn find_effect(scene: &Scene, key: &str, work: &Cell<u64>) -> MistakeEffect {
     let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else {
         return MistakeEffect::Hidden;

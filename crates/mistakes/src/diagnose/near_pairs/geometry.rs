@@ -5,7 +5,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::{Vec2, length, vector_at};
 
-/// A body's extent with its radius, as its lower and upper corner.
+/// A body's bounding box, which includes its radius, as its lower and upper corners.
 pub(super) type BoundingBox = [Vec2; 2];
 
 /// The geometry of a scene at the start of a step.

@@ -29,8 +29,8 @@ const MAX_STEPS: usize = 24;
 /// between two.
 const MAX_WORK: usize = 4_000_000;
 
-/// The maximum probability that a reported trait is common by chance, before it is divided by the number of variants of
-/// its row.
+/// The maximum probability that wrong pairs share a reported trait by chance. For each row, this limit is divided by
+/// the number of the row's variants.
 const MAX_CHANCE_PROBABILITY: f64 = 2e-3;
 
 /// One in this many wrong pairs may lack a trait that the others have in common.

@@ -33,7 +33,7 @@ fosssim_num::closed_set! {
     letter
 }
 
-/// A row of the table with an axis and a number.
+/// A trait of the table, applied to one axis and one number.
 #[derive(Clone, Copy)]
 pub(super) struct TraitVariant {
     pub row: &'static TraitRow,
@@ -211,7 +211,7 @@ fn pair_particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     body_particles(pair).chain(pair.edge().into_iter().flat_map(|edge| [edge.first, edge.second]))
 }
 
-/// Returns the positions of bodies a number of steps earlier, if they had moved with their current velocities.
+/// Returns where the bodies would have been `steps` steps earlier if they had moved with their current velocities.
 fn extrapolate_back(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
     let State { positions, velocities } = pair.geometry.before;
     let h = pair.geometry.scene.time_step;
@@ -253,7 +253,7 @@ fn common_range([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
-/// Returns the length of the boxes' overlap on an axis, as a share of the smaller box.
+/// Returns the length of the boxes' overlap on an axis, as a fraction of the smaller box.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     let [from, to] = common_range(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);

@@ -45,8 +45,8 @@ const MAX_OTHER_KEYS: usize = 5;
 /// The maximum error of a polynomial that is right except for round-off, relative to the size of its terms.
 const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
-/// The maximum cost (see [`Candidate::cost`]) of guesses that are reported together with the best guess, in addition to
-/// its cost.
+/// The maximum difference in cost ([`Candidate::cost`]) between the best guess and a guess that is reported together
+/// with it.
 const MAX_COST_DIFFERENCE: f64 = 1.6;
 
 /// Returns explanations of the wrong polynomials of the samples, or none if all are right. A mistake that several

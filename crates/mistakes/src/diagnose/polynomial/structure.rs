@@ -129,7 +129,7 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
             continue;
         }
         let formula = &readings(other)[0];
-        let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
+        let detail = || Some(PolynomialDetail::InPlaceOf { used: other, expected: study.subject });
         let formed = |case: &PolynomialSample| formula.polynomial(&case.inputs);
         found.extend(predict(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
         let negative = |case: &PolynomialSample| negate_coefficients(&formed(case));

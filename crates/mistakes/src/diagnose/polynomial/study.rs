@@ -63,7 +63,8 @@ pub(super) struct Candidate {
     pub guess: Guess,
     /// The details of the guess, which describe the wrong formula completely.
     pub details: Vec<PolynomialDetail>,
-    /// All lists of details that reproduce as much, the likeliest first. It is empty if there is only one such list.
+    /// All lists of details that reproduce equally many samples, the likeliest first. It is empty if there is only one
+    /// such list.
     pub forms: Vec<Vec<PolynomialDetail>>,
     /// The cost of the guess; a likelier guess costs less. The cost is 1 to 3 for a change of the whole list, about 3
     /// for one factor or sign, and 4 for one wrong input. It is 5 or more for wrong letters and foreign terms. The

@@ -1,4 +1,4 @@
-//! Collects the data of explanations from a trace in one reading. Every step is searched for wrong records, for
+//! Reads a trace once, and collects the data for its explanations. Every step is searched for wrong records, for
 //! detections, and for values that are not finite. One budget limits the reference's work for all three.
 mod capture;
 mod compare;

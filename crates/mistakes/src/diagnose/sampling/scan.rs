@@ -16,7 +16,7 @@ use fosssim_model::{
 use fosssim_num::tolerances::KNOWN_STATE_ERROR;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The maximum number of kept steps of each sort, wrong and right.
+/// The maximum number of kept steps of each kind, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
 /// The number of similar wrong steps that are all kept. One in [`SIMILAR_SAMPLING_RATE`] of the further ones is kept.
@@ -98,7 +98,7 @@ pub struct Scanner {
     /// The wrong steps with events that end in values that are not finite.
     non_finite_steps: Vec<KeptStep>,
     /// The number of the previous step, and the change of its velocities.
-    last_positions: Option<(u32, Vec<f64>)>,
+    last_velocity_changes: Option<(u32, Vec<f64>)>,
 }
 
 impl Scanner {
@@ -112,7 +112,7 @@ impl Scanner {
             signature_counts: BTreeMap::new(),
             memory: 0,
             non_finite_steps: Vec::new(),
-            last_positions: None,
+            last_velocity_changes: None,
         }
     }
 
@@ -142,7 +142,8 @@ impl Scanner {
             return;
         }
         let change = before.state.velocities.iter().zip(&actual.end.state.velocities).map(|(old, new)| new - old);
-        let last = self.last_positions.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
+        let last =
+            self.last_velocity_changes.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
         let count = self.signature_counts.entry((difference.is_some(), signature)).or_default();
         let number = *count;
         *count += 1;

@@ -91,7 +91,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
     misplaced > 0 && (found == pairs || is_spoilt)
 }
 
-/// The maximum relative error of a contact vector that is only inaccurate.
+/// The maximum relative error of a contact vector that counts as inaccurate, and not as wrong.
 const INEXACT_ERROR: f64 = 1e-5;
 
 /// The contacts of all steps, with those of the reference.
@@ -127,7 +127,7 @@ pub(super) fn explain_overlaps(
             ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !impulse_matches(one, other, &ROUND_OFF))
         });
         let Some(first) = first else { continue };
-        // An earlier response of the pass changes velocities, and with them whether its bodies approach others.
+        // An earlier response of the pass changes velocities, which decide whether its bodies approach others.
         let moved_particles: Vec<usize> = ours[..first].iter().flat_map(particles).collect();
         let differing = ours.get(first).into_iter().chain(theirs.get(first)).flat_map(particles);
         if differing.into_iter().any(|particle| moved_particles.contains(&particle)) {

@@ -61,7 +61,7 @@ pub(super) enum ZoneResult {
     Deformed,
 }
 
-/// The first round of the geometric part of a step whose middle, and whose first geometric pass, are right.
+/// The first round of the geometric part of a step whose mid state and first geometric pass are right.
 pub(super) struct FirstRound<'a> {
     scene: &'a Scene,
     pub(super) facts: &'a StepFacts,

@@ -1,8 +1,8 @@
 //! Reads numbers like a C++ stream: the longest prefix counts, the rest is ignored (scene-format.md 2).
 use crate::scene::numbers::{count_digits, mantissa_end};
 
-/// Returns a 64-bit float, correctly rounded. Returns `None` for texts without digits, for exponents without digits,
-/// and on overflow. Underflow gives zero.
+/// Parses a 64-bit float, correctly rounded. Returns `None` if the text or its exponent has no digits, and on overflow.
+/// Underflow gives zero.
 pub(super) fn parse_scalar(text: &[u8]) -> Option<f64> {
     let text = trim_start(text);
     let mut end = mantissa_end(text)?;
@@ -20,12 +20,12 @@ pub(super) fn parse_scalar(text: &[u8]) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// Returns a 32-bit integer, or `None` if the text does not start with one.
+/// Parses a 32-bit integer. Returns `None` if the text does not start with one.
 pub(super) fn parse_integer(text: &[u8]) -> Option<i32> {
     i32::try_from(parse_long(text)?).ok()
 }
 
-/// Returns a truth value, or `None` if the text does not start with an integer that is 0 or 1.
+/// Parses a boolean. Returns `None` if the text does not start with an integer that is 0 or 1.
 pub(super) fn parse_boolean(text: &[u8]) -> Option<bool> {
     match parse_long(text)? {
         0 => Some(false),

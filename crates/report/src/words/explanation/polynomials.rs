@@ -60,8 +60,8 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Holds(value) => format!("the list always contains only {value}"),
         PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
         PolynomialDetail::SinglePrecision => "every value is a float".to_owned(),
-        PolynomialDetail::InPlaceOf { stands, belongs } => {
-            format!("the {} polynomial is used instead of {}", stands.name(), belongs.name())
+        PolynomialDetail::InPlaceOf { used, expected } => {
+            format!("the {} polynomial is used instead of {}", used.name(), expected.name())
         }
         PolynomialDetail::Exchanged { powers: [one, other] } => {
             format!("the {} and the {} are exchanged", PowerText(*one), PowerText(*other))

@@ -189,7 +189,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::Holds(1.5),
         PolynomialDetail::Every(1e-11),
         PolynomialDetail::SinglePrecision,
-        PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::AlphaLow },
+        PolynomialDetail::InPlaceOf { used: Subject::AlphaHigh, expected: Subject::AlphaLow },
         PolynomialDetail::Exchanged { powers: [3, 1] },
         PolynomialDetail::LastOnly(1),
         PolynomialDetail::LastOnly(2),

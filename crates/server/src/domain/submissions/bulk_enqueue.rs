@@ -16,7 +16,7 @@ macro_rules! payload {
 }
 pub(in crate::domain) use payload;
 
-/// Returns the texts that a [`payload`] puts between the columns. They are the same for all submissions to an
+/// Returns the strings that a [`payload`] puts between the columns. They are equal for all submissions to an
 /// assignment.
 pub(in crate::domain) fn statement_pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artifact { digest: crate::store::Digest::from_bytes(b""), size: 0 };

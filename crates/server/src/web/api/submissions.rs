@@ -260,7 +260,7 @@ answers! { OK:
 actions! { NO_CONTENT:
     /// Requests that staff review a submission of the person who is signed in.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
-        request(member: Member, { id }, input: ReviewRequest) -> "Staff sees it": member.request(id, &input.text);
+        request(member: Member, { id }, input: ReviewRequest) -> "Staff see it": member.request(id, &input.text);
     /// Removes a submission with its grades and reports. This cannot be undone.
     delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
         remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);

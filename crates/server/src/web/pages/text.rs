@@ -124,7 +124,7 @@ pub(super) fn describe_state(state: &str) -> &'static str {
         "waiting" => "waiting",
         "running" => "being graded",
         "done" => "graded",
-        "buried" => "the grader failed; this is not your fault, and staff is informed",
+        "buried" => "the grader failed; this is not your fault, and staff are informed",
         _ => "taken out of the queue",
     }
 }

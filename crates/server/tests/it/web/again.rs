@@ -41,7 +41,7 @@ async fn staff_has_it_graded_again(fresh: Fresh) {
             assert!(!text.contains("secret") && !text.contains("suite.toml"), "{text}");
         }
         let seen = admin.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
-        let fault = seen["fault"].as_str().expect("staff is told");
+        let fault = seen["fault"].as_str().expect("staff get a reason");
         assert!(fault.contains("suite.toml:5:9: a secret of the machine") && !fault.contains('/'), "{fault}");
     }
     let metrics = server.visitor().get("/metrics").expect(200).text();

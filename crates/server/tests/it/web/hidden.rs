@@ -68,7 +68,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     assert!(!page.contains("RTE") && page.contains("10 of 10 points"), "{page}");
     assert!(page.contains("everything on this page is accepted") && !page.contains("Everything is accepted"), "{page}");
     assert_eq!(told(&teacher, other).0["points"], "7");
-    // After staff has published the groups, everything is shown.
+    // After staff have published the groups, everything is shown.
     ada.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(403);
     teacher.post_form("/c/physics/a/m1/publish", "").expect(303);
     assert_eq!(told(&ada, other), told(&teacher, other));

@@ -159,7 +159,7 @@ async fn a_platform_with_troubles(fresh: Fresh) {
             inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 40.0).map(|(_, score)| score).collect();
         assert!(of_forty.iter().all(|score| score["timestamp"] == of_forty[0]["timestamp"]), "{of_forty:?}");
     }
-    // A column on a host that is not configured is never requested, and staff sees the reason.
+    // A column on a host that is not configured is never requested, and staff see the reason.
     let elsewhere = |claims: &mut Value| {
         claims[RESOURCE]["id"] = json!("other");
         claims[CUSTOM] = json!({"assignment": "m1"});

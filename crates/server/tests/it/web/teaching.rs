@@ -288,7 +288,7 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     assert_eq!(seen()["grade"]["points"], "76");
     let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
     assert!(page.contains("76 of 100 points") && page.contains("2 days late, which deducts 20 %"), "{page}");
-    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 of 100"), "staff sees the same");
+    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 of 100"), "staff see the same");
     assert!(teacher.get("/c/physics").expect(200).text().contains("\"accepted\">1<"), "one student has it right");
     assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",76,"));
     // With more time for one student the submission is not late, and points by hand are not reduced.

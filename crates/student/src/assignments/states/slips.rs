@@ -1,5 +1,4 @@
-//! Slips, which are small changes that make quantities of a program wrong. A few kinds of slips are enough for all
-//! quantities.
+//! Slips: small changes that make quantities of a program wrong. A few kinds of slips are enough for all quantities.
 /// The table of slips, each with its part of a sentence, which follows the quantity's name.
 macro_rules! slips {
     ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {

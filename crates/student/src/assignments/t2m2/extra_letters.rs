@@ -1,4 +1,4 @@
-//! Quantities from outside a formula that students may use in it.
+//! Quantities that do not belong in a formula, but that students may use there.
 use super::{Inputs, Subject, formulas::Letter, inputs::square_root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 

@@ -7,7 +7,7 @@ use fosssim_num::bounded::BoundedVector;
 pub struct Ingredient {
     /// The vector's name in messages.
     pub name: &'static str,
-    /// Returns the vector for these inputs of a formula.
+    /// The function that returns the vector for the inputs of a formula.
     pub value: fn(&Inputs) -> BoundedVector,
     /// The amount that this vector adds to the cost of a guess. Guesses with lower costs are preferred.
     pub cost: f64,

@@ -1,4 +1,5 @@
-//! Wrong formulas that are not edits of a correct one.
+//! Wrong formulas that are not edits of a correct one. Here, overlap and approach are the names of polynomials
+//! (collisions.md 2).
 use super::{Inputs, Subject, formulas::readings, inputs::square_root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 

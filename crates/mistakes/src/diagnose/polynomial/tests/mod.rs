@@ -419,7 +419,7 @@ fn lists_handed_over_wrongly_are_named() {
 
 #[test]
 fn exchanged_cut_and_constant_polynomials_are_named() {
-    let high = PolynomialDetail::InPlaceOf { stands: Subject::AlphaHigh, belongs: Subject::AlphaLow };
+    let high = PolynomialDetail::InPlaceOf { used: Subject::AlphaHigh, expected: Subject::AlphaLow };
     let swapped = only(PairKind::ParticleEdge, "other-polynomial", is(high), |motion| {
         let mut lists = edge_lists(motion);
         lists.swap(1, 2);

@@ -264,7 +264,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
 const FAMILIES: [&MistakeFamily; 7] =
     [&PAIR_FAMILY, &END_FAMILY, &ALPHA_FAMILY, &PLACE_FAMILY, &QUANTITY_FAMILY, &ROUND_FAMILY, &SUM_FAMILY];
 
-/// The prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
+/// The rows that exist for only one kind of pair. Each entry is a prefix of their ids, and the reason.
 const SINGLE_KIND_PREFIXES: &[(&str, &str)] = &[
     ("pe-quartic-", "it concerns one product of the quartic"),
     ("pe-cubic-", "it concerns one product of the quartic"),
