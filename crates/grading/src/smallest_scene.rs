@@ -2,9 +2,14 @@
 //! scenes.
 use super::{config::RunLimits, failure_cause::FailureKind, runner::Runner, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
+use fosssim_findings::explanation::Subject;
 pub use fosssim_findings::smallest_scene::SmallestScene;
-use fosssim_judge::{Stop, kept_trace::MAX_KEPT_BYTES, replay::Options};
-use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_judge::{
+    Book, FindingDetail, Stop,
+    kept_trace::MAX_KEPT_BYTES,
+    replay::{Options, judge},
+};
+use fosssim_mistakes::diagnose::{Explanation, ExplanationTopic, explain, is_named_in};
 use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
@@ -62,6 +67,8 @@ pub struct ShrunkScene {
     pub scene: SmallScene,
     /// The program's behavior on the smallest scene.
     pub observation: Observation,
+    /// The explanations of the trace that the program wrote for the smallest scene.
+    pub explanations: Vec<Explanation>,
     /// The number of times that the program was run.
     pub runs: u32,
 }
@@ -99,13 +106,51 @@ pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec
     all
 }
 
-/// Returns whether a scene shows only what those in `found` show: it has the content of one of them, or its
-/// explanations name the cause of one.
-pub fn is_repetition(small: &SmallestScene, found: &[SmallestScene]) -> bool {
-    found.iter().any(|scene| {
-        let cause = scene.explanations.first().filter(|cause| cause.is_about_program());
-        scene.xml == small.xml || cause.is_some_and(|cause| is_named_in(cause, &small.explanations))
-    })
+impl ShrunkScene {
+    /// Returns the mistake for which the scene was made, or else the likeliest mistake that it shows. Returns `None` if
+    /// that says nothing about the program.
+    fn mistake(&self) -> Option<&Explanation> {
+        let mistake = match &self.reason {
+            WrongReason::Mistake(mistake) => Some(&**mistake),
+            _ => self.explanations.first(),
+        };
+        mistake.filter(|mistake| mistake.is_about_program())
+    }
+
+    /// Returns whether the scene shows only what those in `found` show. It then is one of them, or nothing in it names
+    /// its own mistake apart from theirs. If no known mistake explains the scene, its only difference may be that of
+    /// one of them, or be about pairs for which their polynomials are wrong.
+    fn is_repetition(&self, found: &[Self]) -> bool {
+        if matches!(self.reason, WrongReason::Ended(..) | WrongReason::BrokenTrace) {
+            return found.iter().any(|one| one.reason == self.reason);
+        }
+        let mistakes: Vec<&Explanation> = found.iter().filter_map(Self::mistake).collect();
+        let is_named_before = |explanation: &Explanation| {
+            mistakes.iter().any(|mistake| is_named_in(mistake, std::slice::from_ref(explanation)))
+        };
+        let (own, all) = (self.mistake(), &self.explanations);
+        let others: Vec<Explanation> = all.iter().filter(|one| !is_named_before(one)).cloned().collect();
+        let is_new = own.is_some_and(|own| is_named_in(own, &others));
+        if own.is_some_and(is_named_before) || (others.len() < all.len() && !is_new) {
+            return true;
+        }
+        let is_known = own.is_some_and(|own| own.topic == ExplanationTopic::Mistake);
+        let only = self.only_finding().filter(|_| !is_known);
+        let kind = only.filter(|_| own.is_none()).and_then(|only| only.pair()).map(|pair| pair.kind);
+        let is_about = |subject: &Subject| kind == Some(subject.kind());
+        mistakes.iter().any(|mistake| mistake.subjects().iter().any(is_about))
+            || found.iter().any(|one| {
+                one.scene.scene == self.scene.scene || only.is_some_and(|only| one.only_finding() == Some(only))
+            })
+    }
+
+    /// Returns the only finding of the fair rules; `None` if there are several.
+    fn only_finding(&self) -> Option<FindingDetail> {
+        let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
+        let outcome = judge(&self.scene.scene, &self.observation.trace[..], &options, &mut ());
+        let findings = outcome.findings_by(Book::Fair);
+        findings.first_divergence.as_ref().filter(|_| findings.counts.total() == 1).map(|finding| finding.detail)
+    }
 }
 
 /// Searches for smallest scenes, by running a program on smaller and smaller ones.
@@ -121,11 +166,22 @@ pub struct Shrinker<'a> {
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause; `None` if no smaller scene shows it.
+    /// Returns the smallest scene for each cause, without scenes that show only what earlier ones show. Calls `begin`
+    /// before each search.
     ///
     /// # Errors
     /// Fails if the grader or the machine fails. The error is the reason, as text.
-    pub fn shrink_cause(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
+    pub fn shrink_causes(&self, causes: Vec<Cause<'_>>, begin: &dyn Fn()) -> Result<Vec<ShrunkScene>, String> {
+        let mut found = Vec::new();
+        for cause in causes {
+            begin();
+            found.extend(self.shrink_cause(cause)?.filter(|small| !small.is_repetition(&found)));
+        }
+        Ok(found)
+    }
+
+    /// Returns the smallest scene for a cause; `None` if no smaller scene shows it.
+    fn shrink_cause(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.step_count()));
         let mut spent = Duration::ZERO;
@@ -157,6 +213,7 @@ impl Shrinker<'_> {
             fault?;
             if let Some((small, observed)) = small.zip(last_observation) {
                 return Ok(Some(ShrunkScene {
+                    explanations: explain(&small.scene, &observed.trace),
                     reason,
                     origin: task.name.clone(),
                     scene: small,
@@ -188,4 +245,58 @@ fn list_wrong_steps(scene: &Scene, observation: &Observation) -> Vec<u32> {
         (ended && examined.outcome.steps_judged < scene.step_count()).then_some(examined.outcome.steps_judged + 1);
     let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);
     behind.into_iter().chain(wrong.map(|(_, step)| step)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use fosssim_findings::FindingKind;
+    use fosssim_student::{self as student, Student};
+
+    /// Returns a scene that was made for the mistake `reason`, with a program that has the mistake `key`.
+    fn shrunk(key: &str, reason: &str, xml: &str) -> ShrunkScene {
+        let scene = scene::read("small.xml", xml.as_bytes()).expect("a scene").scene;
+        let mistake = student::find(key).expect("a row").mistake;
+        let trace = student::record_trace(&scene, Student::new(Some(mistake))).expect("a whole trace");
+        ShrunkScene {
+            reason: WrongReason::Mistake(Explanation::with_topic(reason, ExplanationTopic::Mistake).into()),
+            origin: "a scene".to_owned(),
+            explanations: explain(&scene, &trace),
+            scene: SmallScene { scene, step: 1, is_minimal: true },
+            observation: Observation { trace, ended: RunEnd::Exited(0) },
+            runs: 1,
+        }
+    }
+
+    fn two_bodies(x: &str) -> String {
+        format!(
+            r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="1"/>
+            <collision type="continuous-time" COR="1"/>
+            <particle px="0" py="0" vx="0" vy="0.5" m="1" fixed="0" radius="1"/>
+            <particle px="{x}" py="0.5" vx="0" vy="0" m="1" fixed="0" radius="1"/></scene>"#
+        )
+    }
+
+    /// An interval that is open at both ends cannot be distinguished from one that is open at its start if the impact
+    /// is at the start.
+    #[test]
+    fn a_scene_that_shows_only_an_earlier_mistake_is_a_repetition() {
+        let start = shrunk("decision-open-start", "decision-open-start", &two_bodies("0"));
+        let interval = shrunk("decision-open-start", "decision-open-interval", &two_bodies("0.5"));
+        assert!(!start.is_repetition(&[]) && interval.is_repetition(&[start.clone()]));
+        let other = shrunk("pp-radii-squared-apart", "pp-radii-squared-apart", &two_bodies("0.5"));
+        assert!(!other.is_repetition(&[start]));
+    }
+
+    #[test]
+    fn an_unexplained_scene_with_the_difference_of_an_earlier_one_is_a_repetition() {
+        let earlier = shrunk("decision-open-start", "decision-open-start", &two_bodies("0"));
+        let unexplained = |mut small: ShrunkScene| {
+            (small.reason, small.explanations) = (WrongReason::Finding(FindingKind::Velocity, None), Vec::new());
+            small
+        };
+        let same = unexplained(shrunk("decision-open-start", "decision-open-start", &two_bodies("0")));
+        let other = unexplained(shrunk("pp-radii-squared-apart", "pp-radii-squared-apart", &two_bodies("0.5")));
+        assert!(same.is_repetition(&[earlier.clone()]) && !other.is_repetition(&[earlier]));
+    }
 }

@@ -24,8 +24,7 @@ use crate::{
         disclosure::DisclosedFinding,
         failure_cause::FailureKind,
         smallest_scene::{
-            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, is_repetition,
-            shorten_limits,
+            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, shorten_limits,
         },
     },
     together::disclosure::limit_explanations,
@@ -95,17 +94,13 @@ pub(super) fn add_smallest(
     let shrinker = Shrinker { runner, program: &program.program, assignment, limits };
     let causes = group_causes(&diagnosis.common, &wrong);
     let bar = console::Bar::for_runs(causes.len() as u64);
-    let mut found: Vec<SmallestScene> = Vec::new();
-    for cause in causes {
-        bar.next_run("making scenes smaller");
-        let small = shrinker.shrink_cause(cause).map_err(anyhow::Error::msg)?;
-        let one = small.map(|small| describe(&small, &name, &program.suite, drawing));
-        if let Some((small, card)) = one.filter(|(one, _)| !is_repetition(one, &found)) {
-            found.push(small);
-            cards.push(card);
-        }
+    let found =
+        shrinker.shrink_causes(causes, &|| bar.next_run("making scenes smaller")).map_err(anyhow::Error::msg)?;
+    for small in &found {
+        let (small, card) = describe(small, &name, &program.suite, drawing);
+        diagnosis.smallest.push(small);
+        cards.push(card);
     }
-    diagnosis.smallest = found;
     Ok(())
 }
 
@@ -116,7 +111,7 @@ pub(super) fn describe(
     suite: &str,
     drawing: Drawing,
 ) -> (SmallestScene, Option<Card>) {
-    let ShrunkScene { reason, origin, scene: SmallScene { scene, step, is_minimal }, observation: seen, runs } = small;
+    let ShrunkScene { reason, origin, scene: SmallScene { scene, step, is_minimal }, observation: seen, .. } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| describe_end(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
     let (case, card, _) = judge_case(names, false, scene, &seen.trace[..], note, drawing);
@@ -131,7 +126,7 @@ pub(super) fn describe(
         xml: scene::write(scene),
         bodies: scene.particles.len(),
         steps: scene.step_count(),
-        runs: *runs,
+        runs: small.runs,
         is_minimal: *is_minimal,
         note,
         first_finding: first,
@@ -157,20 +152,27 @@ pub(super) fn describe(
     (small, card)
 }
 
-/// Returns the explanation of the cause, but with the example from the smallest scene.
+/// Returns the explanation of the cause, but with the example from the smallest scene, and without parts of the cause
+/// that this scene does not show.
 fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
     let named = own.iter().find(|explanation| is_named_in(cause, std::slice::from_ref(explanation)));
     let example = named.or(own.first()).and_then(|explanation| explanation.example.clone());
-    // If the cause is unwritten stages, the explanation lists these stages.
-    let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
-    let details = match (&cause.topic, named) {
+    // If the cause is unwritten stages, the explanation lists the stages that the scene shows.
+    let is_shown = |key: &&String| own.iter().any(|other| other.key == **key || other.same_as.contains(key));
+    let same_as = cause.same_as.iter().filter(|key| cause.is_unfinished() && is_shown(key)).cloned().collect();
+    let mut topic = cause.topic.clone();
+    let details = match (&mut topic, named) {
         // Many formulas agree with a single wrong polynomial.
         (ExplanationTopic::Polynomials { .. }, _) if cause.samples < 2 => Vec::new(),
         // The numbers that describe a wrong stage are those of this scene.
         (ExplanationTopic::Stage(_), Some(own)) => own.details.clone(),
+        (ExplanationTopic::Pairs(all), Some(Explanation { topic: ExplanationTopic::Pairs(own), .. })) => {
+            all.limit_to(own);
+            cause.details.clone()
+        }
         _ => cause.details.clone(),
     };
-    Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
+    Explanation { example, topic, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
 }
 
 /// Returns the values that differ in the wrong steps, as text, if there are any. With `has_example`, a single
@@ -213,6 +215,21 @@ mod tests {
         let [cause, own] =
             [[137, 304, 0], [1, 0, 0]].map(|times| Explanation::with_topic(Explanation::PAIRS, pairs(times)));
         assert_eq!(add_example(&cause, &[own]).topic, cause.topic);
+        let twice = Explanation::with_topic(Explanation::PAIRS, pairs([1, 304, 2]));
+        let shown = Explanation::with_topic(Explanation::PAIRS, pairs([0, 0, 1]));
+        assert_eq!(add_example(&twice, &[shown]).topic, pairs([0, 304, 2]));
+    }
+
+    #[test]
+    fn only_unwritten_stages_that_the_scene_shows_are_listed() {
+        let keys = |keys: &[&str]| keys.iter().map(|&key| key.to_owned()).collect::<Vec<String>>();
+        let unfinished = Explanation::with_topic(Explanation::UNFINISHED, ExplanationTopic::Unfinished);
+        let cause = Explanation { same_as: keys(&["ph-zero", "loop-empty", "failsafe-empty"]), ..unfinished };
+        let own = Explanation {
+            same_as: keys(&["pp-empty", "loop-empty"]),
+            ..Explanation::with_topic("failsafe-empty", ExplanationTopic::Mistake)
+        };
+        assert_eq!(add_example(&cause, &[own]).same_as, keys(&["loop-empty", "failsafe-empty"]));
     }
 
     #[test]

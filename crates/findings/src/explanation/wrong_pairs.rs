@@ -26,6 +26,16 @@ pub struct PairCounts {
 }
 
 impl WrongPairs {
+    /// Keeps only the faults that another trace shows, and takes the first wrong pair from it.
+    pub fn limit_to(&mut self, other: &Self) {
+        self.first = other.first;
+        for (one, other) in self.counts_by_kind.iter_mut().zip(&other.counts_by_kind) {
+            for times in [0, 2].into_iter().filter(|&times| other.counts_by_times[times] == 0) {
+                one.counts_by_times[times] = 0;
+            }
+        }
+    }
+
     /// Adds the counts of another trace.
     pub fn add(&mut self, other: &Self) {
         let add = |one: &mut [u64; 3], other: &[u64; 3]| one.iter_mut().zip(other).for_each(|(one, more)| *one += more);

@@ -12,8 +12,7 @@ use crate::{
     runner::Runner,
     score, skipped_scenes,
     smallest_scene::{
-        DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, is_repetition,
-        shorten_limits,
+        DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, shorten_limits,
     },
     staging::StagedProgram,
     verdict::Verdict,
@@ -109,16 +108,14 @@ impl SubmissionGrading<'_> {
             assignment: plan.assignment(),
             limits: QUICK_LIMITS,
         };
-        let mut found: Vec<SmallestScene> = Vec::new();
-        for (reason, mut tasks) in group_causes(&likely, &wrong).into_iter().take(MAX_CAUSES) {
+        let mut causes = group_causes(&likely, &wrong);
+        causes.truncate(MAX_CAUSES);
+        for (_, tasks) in &mut causes {
             if tasks.iter().any(|task| is_visible(&task.name)) {
                 tasks.retain(|task| is_visible(&task.name));
             }
-            let small = shrinker.shrink_cause((reason, tasks)).ok().flatten();
-            let described = small.map(|small| show(&small));
-            found.extend(described.filter(|described| !is_repetition(described, &found)));
         }
-        found
+        shrinker.shrink_causes(causes, &|| ()).unwrap_or_default().iter().map(show).collect()
     }
 
     /// Infers the milestone for which the program was written, if the library of that milestone lacks features that the

@@ -1,16 +1,15 @@
 //! Combines the explanations of all traces of one program: the likeliest statement first, then further ones for the
 //! unexplained rest ([`evidence`](super::evidence)).
 use super::{
-    Detail, Explanation, Guess, ListGuess,
+    Explanation, Guess,
     evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest, generalize_fault},
     explain::is_formula_area,
     fault::StepStage,
     known::is_empty_stage,
-    naming::{explain_by_row, is_named_in},
+    naming::{explain_zero_coefficients, is_named_in},
     near_pairs,
     topic::{ExplanationTopic, PolynomialEvidence},
 };
-use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOG, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -133,31 +132,6 @@ fn explain_non_finite_value(traces: &[&[Explanation]]) -> Option<Explanation> {
             .any(|explanation| matches!(&explanation.topic, ExplanationTopic::NotFinite(other) if other.recovers));
     }
     Some(likeliest)
-}
-
-/// Returns an explanation for each kind of pair whose coefficients are all zero, if `one` is about such coefficients.
-fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
-    let is_zero = matches!(
-        &one.topic,
-        ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero)), .. }
-    );
-    let subjects = one.subjects();
-    // The course supplies the approach polynomial of particles and edges.
-    let is_supplied = |subject: &&Subject| **subject != Subject::EdgeApproach;
-    let is_all = |kind: &PairKind| {
-        Subject::all_of_kind(*kind).iter().filter(is_supplied).all(|subject| subjects.contains(subject))
-    };
-    let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
-    let row = |kind: PairKind| {
-        let is_zero_row = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
-        CATALOG.iter().find(is_zero_row)
-    };
-    let to_explanation = |row: &Row| Explanation {
-        details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
-        example: None,
-        ..explain_by_row(one, row, Vec::new())
-    };
-    kinds.filter_map(row).map(to_explanation).collect()
 }
 
 /// Returns one explanation for several empty stages. Their keys are in [`Explanation::same_as`]. A stage with another

@@ -1,7 +1,11 @@
 //! Decides whether explanations are about the same mistake.
-use super::topic::{ExplanationTopic, PolynomialEvidence};
+use super::{
+    Guess, ListGuess,
+    topic::{ExplanationTopic, PolynomialEvidence},
+};
 use fosssim_findings::explanation::{Detail, Explanation};
-use fosssim_student::{Row, all_rows, find};
+use fosssim_model::sim::PairKind;
+use fosssim_student::{CATALOG, Row, all_rows, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns an explanation of the same steps as `one` by the known mistake of `row`.
@@ -15,14 +19,41 @@ pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>)
     Explanation { key: row.id.to_owned(), topic: ExplanationTopic::Mistake, details, same_as, ..one.clone() }
 }
 
+/// Returns an explanation for each kind of pair whose coefficients are all zero, if `one` is about such coefficients.
+pub(super) fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
+    let is_zero = matches!(
+        &one.topic,
+        ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero)), .. }
+    );
+    let subjects = one.subjects();
+    // The course supplies the approach polynomial of particles and edges.
+    let is_supplied = |subject: &&Subject| **subject != Subject::EdgeApproach;
+    let is_all = |kind: &PairKind| {
+        Subject::all_of_kind(*kind).iter().filter(is_supplied).all(|subject| subjects.contains(subject))
+    };
+    let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
+    let row = |kind: PairKind| {
+        let is_zero_row = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
+        CATALOG.iter().find(is_zero_row)
+    };
+    let to_explanation = |row: &Row| Explanation {
+        details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
+        example: None,
+        ..explain_by_row(one, row, Vec::new())
+    };
+    kinds.filter_map(row).map(to_explanation).collect()
+}
+
 /// Returns whether a trace's explanations name a mistake, either as reported or as indistinguishable. For unwritten
 /// work, one stage is enough.
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
         let is_stage = |key: &String| mistake.same_as.contains(key);
-        return explanations
-            .iter()
-            .any(|explanation| is_stage(&explanation.key) || explanation.same_as.iter().any(is_stage));
+        return explanations.iter().any(|explanation| {
+            let zeros = explain_zero_coefficients(explanation);
+            std::iter::once(explanation).chain(&zeros).any(|one| is_stage(&one.key))
+                || explanation.same_as.iter().any(is_stage)
+        });
     }
     if let (true, ExplanationTopic::Polynomials { subjects, found }) = (mistake.is_unexplained(), &mistake.topic) {
         let says_so = |explanation: &Explanation| match (found, &explanation.topic) {
