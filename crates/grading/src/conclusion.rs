@@ -38,7 +38,7 @@ pub struct ProgramRun {
 }
 
 impl ProgramRun {
-    /// Returns the values for a trace that no program wrote. They are the same as for a program that ended normally.
+    /// Returns the run for a trace that no program wrote. It has the values of a program that ended normally.
     pub fn without_program() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
         Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }

@@ -172,7 +172,7 @@ impl<'a> SharedGrading<'a> {
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> ResultKey {
-        // A program may depend on its own name, so the name belongs to the key.
+        // A program may depend on its own name, so the name is part of the key.
         let own = [scene.name.as_str(), called, students.describe().0];
         let parts: Vec<&str> = self.conditions.iter().map(String::as_str).chain(own).collect();
         ResultKey::from_program(digest, &scene.xml, &parts)

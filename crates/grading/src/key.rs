@@ -13,7 +13,7 @@ pub struct ResultKey(String);
 impl ResultKey {
     /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `parts`, which
     /// name everything else that matters, such as the rules, the limits, the command and the kind of judging. The
-    /// grader itself also belongs to the key.
+    /// grader itself is also part of the key.
     pub fn from_program(program: &blake3::Hash, scene: &[u8], parts: &[&str]) -> Self {
         Self::from_parts(running_build(), program, scene, parts)
     }

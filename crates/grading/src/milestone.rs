@@ -1,5 +1,5 @@
 //! Infers the milestone for which a program was written, from the scenes that it accepts. A starter library exits with
-//! an error if it does not know an integrator or a collision type, no matter what its student wrote.
+//! an error if it does not support an integrator or a collision type, no matter what its student wrote.
 use super::{config::RunLimits, runner::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
@@ -8,7 +8,7 @@ use fosssim_model::{
 use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
-/// The limits of processor time and wall time for a scene with two steps and two bodies. A program needs only some
+/// The limits of processor time and wall time for a scene with two steps and two bodies. A program needs only a few
 /// milliseconds for it.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 

@@ -48,8 +48,8 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
     }
 }
 
-/// Computes the grade from the results of all scenes, in the order of the plan. The build, the sandbox and the times
-/// are still missing in it. Speed counts if `is_timed` is true.
+/// Computes the grade from the results of all scenes, in the order of the plan. It does not contain the build, the
+/// sandbox and the times yet. Speed counts if `is_timed` is true.
 pub(super) fn build_grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = mark_unwritten(results).into_iter();
     let to_grade = |planned: &PlannedGroup| {

@@ -34,7 +34,7 @@ pub enum Credit {
 enum ValueKind {
     Text,
     TextList,
-    /// A number in a range. The text is the name of the table, for messages about numbers out of range.
+    /// A number in a range. The string is the name of the table, for messages about numbers out of range.
     Number(&'static str, Range<f64>),
     /// A whole number that is at least 0.
     WholeNumber,
@@ -61,8 +61,8 @@ const MILESTONE_NAMES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-/// Declares the tables of the file. Each has its keys, and a struct into which the table is read after its form has
-/// been checked.
+/// Declares the tables of the file. Each has its keys, and a struct into which the table is read after its keys and
+/// their types have been checked.
 macro_rules! tables {
     ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
         $(
@@ -189,7 +189,7 @@ fn remove_unknown(
     *table = entries.collect();
 }
 
-/// Returns whether a value has the given type. If it has not, a problem is reported. Wrong parts of a table are
+/// Returns whether a value has the given type. If it does not, a problem is reported. Wrong parts of a table are
 /// removed.
 fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();

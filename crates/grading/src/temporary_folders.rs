@@ -1,7 +1,7 @@
 //! Manages the grader's temporary folders, which no other user can read, and removes those of killed graders.
 //!
-//! All temporary folders of a grader are in one folder. A locked file in it shows that the grader is alive. In contrast
-//! to process numbers, locks also work between containers.
+//! All temporary folders of a grader are in one folder. A locked file in it shows that the grader is alive. Unlike
+//! process IDs, locks also work across containers.
 use fosssim_sandbox::collect;
 use std::{
     fs::{self, File, Permissions},

@@ -9,7 +9,7 @@ use crate::{
 };
 use std::time::Duration;
 
-/// Writes the result of a job if its lease is still valid. A result that comes too late is recorded, but changes
+/// Writes the result of a job if its lease is still valid. A result that arrives too late is recorded, but changes
 /// nothing.
 ///
 /// # Errors
@@ -123,7 +123,7 @@ async fn log_event(transaction: &mut Transaction, about: &JobDetails, kind: &str
     Ok(())
 }
 
-/// Records and counts a message of a worker that came too late. The message has no other effect. If the job does not
+/// Records and counts a worker's message that arrived too late. The message has no other effect. If the job does not
 /// exist, the message is not counted.
 async fn log_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known_claim =

@@ -69,7 +69,7 @@ pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
 }
 
 /// Returns the assignment and the version to which a suite name refers. For example, `t2m2@1` is version 1, and `t2m2`
-/// is the newest version. Upper and lower case are the same. Returns `None` for an unknown name.
+/// is the newest version. Case is ignored. Returns `None` for an unknown name.
 pub fn find_version(name: &str) -> Option<(Assignment, SuiteVersion)> {
     if matches!(name, "earlier" | "earlier@1") {
         return Some((Assignment::T2M1, EARLIER_VERSION));

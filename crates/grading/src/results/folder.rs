@@ -26,7 +26,7 @@ pub const LOCK_FILE: &str = ".lock";
 /// all scenes are wrong and have long explanations.
 pub const MAX_JOURNAL_BYTES: u64 = 16 << 30;
 
-/// The maximum length of a line, in bytes. Results have some thousand bytes. If a line is longer, the journal is
+/// The maximum length of a line, in bytes. A result has a few thousand bytes. If a line is longer, the journal is
 /// damaged.
 pub const MAX_LINE_BYTES: usize = 16 << 20;
 

@@ -113,7 +113,7 @@ pub struct Submission {
     /// The points and the comment of staff, and the owner's request for a review.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
-    /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
+    /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publish
     /// them.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub is_withheld: bool,
@@ -555,7 +555,7 @@ impl FromRow for Assignment {
 /// An entry of the audit log.
 pub(super) struct LogEntry<'a> {
     pub(super) kind: &'static str,
-    /// The account of the person who did it; `None` for the server.
+    /// The account of the person who caused the event; `None` for the server.
     pub(super) actor: Option<i64>,
     pub(super) course: Option<i64>,
     pub(super) assignment: Option<i64>,

@@ -1,4 +1,4 @@
-//! Checks whether a worker can grade. A worker with a broken grader would fail on each job immediately, and would so
+//! Checks whether a worker can grade. A worker with a broken grader would fail on each job immediately, and would thus
 //! take all jobs from the queue.
 //!
 //! Therefore a worker runs a check before its first claim, and again after every fault. Until the check succeeds it

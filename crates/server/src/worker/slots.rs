@@ -35,7 +35,7 @@ const FIRST_REPORT_INTERVAL: Duration = Duration::from_millis(100);
 /// A number of scenes that is larger than that of any suite. Larger numbers in a progress file are ignored.
 const MAX_SCENES: u32 = 1_000_000;
 
-/// The name of the folder in a job's folder that the grader may write into.
+/// The name of the subfolder of a job's folder into which the grader may write.
 const WORK_FOLDER: &str = "work";
 
 /// Runs jobs, one in each slot, until `stop` is canceled. Unfinished jobs are then given back. The folders of jobs are

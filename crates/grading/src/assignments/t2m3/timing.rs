@@ -1,5 +1,5 @@
 //! The timing scenes of the contest, which are as large as the course's. They are generated when they are needed,
-//! because their files would have several megabytes.
+//! because their files would take several megabytes.
 use std::{fmt::Write, sync::OnceLock};
 
 /// A scene that is generated when it is needed.

@@ -1,5 +1,5 @@
-//! The commands `backup` and `restore`, which copy all data of the server into a folder with a manifest, and back. The
-//! database is copied first, because an artifact is in the store before the database refers to it.
+//! The commands `backup` and `restore`, which copy all data of the server into a folder with a manifest, and back from
+//! it. The database is copied first, because an artifact is in the store before the database refers to it.
 mod manifest;
 mod postgres;
 mod restore;

@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 /// The lifetime of a session after its last use, in milliseconds.
 const SESSION_LIFETIME: i64 = 14 * 24 * 3600 * 1000;
 
-/// The maximum number of sessions of an account. Another session ends the oldest one.
+/// The maximum number of sessions of an account. A further session ends the oldest one.
 const MAX_SESSIONS: i64 = 50;
 
 /// The lifetime of a sign-in link, in milliseconds.

@@ -61,7 +61,7 @@ impl SuiteGroup {
     }
 }
 
-/// A suite that was uploaded to a course before.
+/// A suite that was uploaded to a course earlier.
 #[derive(Debug, Clone)]
 pub struct UploadedSuite {
     /// The digest of the suite's archive.
@@ -115,7 +115,7 @@ impl Suites {
     ///
     /// # Errors
     ///
-    /// Fails if the JSON is not such a list.
+    /// Fails if the JSON is not a list of suites.
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
         let list: ListedSuites = serde_json::from_slice(json)?;
         Ok(Self { entries: list.suites })

@@ -52,7 +52,7 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     Ok(ids)
 }
 
-/// Removes all data of the submissions that a statement selects. Waits for transactions that write about one of these
+/// Removes all data of the submissions that a statement selects. Waits for transactions that write data of these
 /// submissions.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;

@@ -27,11 +27,11 @@ const CHOICE_LIFETIME: i64 = 3600 * 1000;
 pub struct LoginRequest {
     /// The platform's issuer.
     pub iss: String,
-    /// Text about the person, which the platform receives back unchanged.
+    /// Text about the person, which the service returns to the platform unchanged.
     pub login_hint: String,
     /// The page that the person wants to open.
     pub target_link_uri: Option<String>,
-    /// Text about the message, which the platform receives back unchanged.
+    /// Text about the message, which the service returns to the platform unchanged.
     pub lti_message_hint: Option<String>,
     /// The client ID of this service on the platform, if the platform sent it.
     pub client_id: Option<String>,
@@ -346,7 +346,7 @@ pub(in crate::domain) async fn enroll(
     {
         return Ok(());
     }
-    // Links and sessions from before must not get the rights of staff.
+    // Earlier links and sessions must not get the rights of staff.
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all_access(transaction, account).await?;
     } else {

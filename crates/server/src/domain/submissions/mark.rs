@@ -79,8 +79,8 @@ fn check_text(what: &str, text: &str, min: usize) -> Result<(), Problem> {
 }
 
 impl Staff {
-    /// Sets the points of a submission instead of the grader's, or restores the grader's, with a reason. If the student
-    /// requested a review, this answers it.
+    /// Replaces the grader's points of a submission, or restores them, with a reason. If the student requested a
+    /// review, this answers it.
     ///
     /// # Errors
     ///
@@ -106,7 +106,7 @@ impl Staff {
         }
         let ungraded = Problem::conflict("the submission is not graded yet", "wait for its grade");
         ensure(points.is_none() || submission.grade.is_some(), ungraded)?;
-        // Without a maximum, the grader failed. Points that were given before stay allowed.
+        // If there is no maximum, the grader failed. Points that were given earlier are still allowed.
         let max = submission.grade.and_then(|grade| grade.outcome.max_points).unwrap_or_else(|| "1000000".to_owned());
         let is_number = |text: &str| {
             text.len() <= 30

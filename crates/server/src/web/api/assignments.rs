@@ -222,7 +222,7 @@ answers! { OK:
     /// Withholds the suite's hidden groups again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
-    /// Returns the standings of all students. Each has the submission that counts.
+    /// Returns the standings of all students, each with the submission that counts.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
 }

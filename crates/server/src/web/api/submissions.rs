@@ -236,7 +236,7 @@ answers! { ACCEPTED:
 }
 
 answers! { OK:
-    /// Sets the points of a submission instead of the grader's, with a comment, or restores the grader's points.
+    /// Replaces the grader's points of a submission, with a comment, or restores them.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, input: MarkInput) -> Submission:
             staff.mark(

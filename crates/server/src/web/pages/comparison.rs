@@ -29,7 +29,7 @@ struct ComparisonPage {
     scenes: Vec<DifferingScene>,
 }
 
-/// A scene on which two results differ: the codes of both verdicts, and the scene's name.
+/// A scene for which two results differ: the codes of both verdicts, and the scene's name.
 type DifferingScene = ([String; 2], String);
 
 /// Returns the fragment of a URL that leads to a scene in a report.
@@ -37,7 +37,7 @@ fn scene_place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }
 
-/// Returns the scenes on which two results have different verdicts. Equal pairs of verdicts are next to each other.
+/// Returns the scenes for which two results have different verdicts. Equal pairs of verdicts are next to each other.
 fn find_differing(one: &FailedScenes, other: &FailedScenes) -> Vec<DifferingScene> {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |failed: &FailedScenes, scene: &String| failed.get(scene).map_or("AC", String::as_str).to_owned();

@@ -37,7 +37,8 @@ struct GradesPage {
     statistics: Statistics,
     /// The details that are stored with the results that count, by the IDs of the results.
     stored_results: BTreeMap<i64, StoredResult>,
-    /// The wrong scenes of the students on the page. Each has the logins of the students for whom it is wrong.
+    /// The wrong scenes of the students on the page. Each is listed with the logins of the students for whom it is
+    /// wrong.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
     /// Whether the assignment has hidden groups, so that students see less than staff until these are published.

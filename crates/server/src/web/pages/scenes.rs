@@ -5,8 +5,8 @@ use std::{cmp::Reverse, collections::BTreeMap};
 /// The maximum number of scenes that a sentence names.
 const MAX_NAMED: usize = 3;
 
-/// Returns the wrong scenes of all results that count, the most frequent first. Each has the logins of the students for
-/// whom it is wrong.
+/// Returns the wrong scenes of all results that count, the most frequent first. Each is listed with the logins of the
+/// students for whom it is wrong.
 pub(super) fn wrong_scenes(
     standings: &[Standing],
     stored_results: &BTreeMap<i64, StoredResult>,

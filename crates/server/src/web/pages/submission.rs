@@ -88,7 +88,7 @@ fn submission_frame(member: &Member, assignment: Option<&Assignment>, submission
 
 pub(super) async fn show_submission(member: Member, UrlPathParts { id, .. }: UrlPathParts) -> Page {
     let submission = member.submission(id).await?;
-    // The member may not see the assignment any more.
+    // The member may no longer see the assignment.
     let assignment = member.assignments().await?.into_iter().find(|one| one.slug == submission.assignment);
     let page = report_page(&submission);
     let report = match page.filter(|_| submission.removed_at.is_none()) {
