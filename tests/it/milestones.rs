@@ -142,7 +142,7 @@ fn forces_of_the_contest_may_be_summed_in_any_order() {
 fn the_drop_in_speaks_as_the_contests_original() {
     let workspace = Workspace::new();
     let (_, scene) = &scenes(T2M3)[0];
-    workspace.write("scene.xml", fosssim_oracle::scene::write(scene));
+    workspace.write("scene.xml", fosssim_oracle::scene::to_xml(scene));
     workspace.write("trace.bin", simulate(scene));
     let run = workspace.original(["-s", "scene.xml", "-d", "0", "-i", "trace.bin"]);
     let text = run.out();

@@ -52,7 +52,7 @@ fn every_scene_survives_being_written() {
     let Some(scenes) = scenes() else { return };
     for (name, bytes) in &scenes {
         let before = original::read(bytes).unwrap_or_else(|refusal| panic!("{name}: {refusal}")).scene;
-        let written = scene::write(&before);
+        let written = scene::to_xml(&before);
         let strict = scene::read(name, written.as_bytes()).unwrap_or_else(|problems| panic!("{name}:\n{problems}"));
         let lenient = original::read(written.as_bytes()).unwrap_or_else(|refusal| panic!("{name}: {refusal}"));
         assert_eq!(strict.scene, before, "{name}");

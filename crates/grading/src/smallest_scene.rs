@@ -227,7 +227,7 @@ impl Shrinker<'_> {
 
     /// Runs the program on a scene, and adds the time that it took to `spent`.
     fn observe(&self, scene: &Scene, spent: &mut Duration) -> Result<Observation, String> {
-        let xml = scene::write(scene).into_bytes();
+        let xml = scene::to_xml(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
         let (trace, outcome) = self.runner.collect_trace(self.program, &task, MAX_KEPT_BYTES)?;
         *spent += outcome.cpu;

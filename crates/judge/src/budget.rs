@@ -118,7 +118,7 @@ mod tests {
         parity::Overall,
         replay::judge_with_memory,
         rules::{Book, Ruling},
-        samples::{changed_reference_trace, scene, simulate, write_frames},
+        samples::{changed_reference_trace, encode_frames, scene, simulate},
     };
 
     /// Returns a scene in which a ball moves between two posts. Where the posts overlap the ball, each round of
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn the_work_of_the_scene_itself_is_always_allowed() {
         let scene = posts(0.0, 20_000);
-        let trace = write_frames(&scene, &simulate(&scene, ()));
+        let trace = encode_frames(&scene, &simulate(&scene, ()));
         let floor = scene_work(&scene) / 2;
         for fair in [false, true] {
             let outcome = judged(floor, &scene, &trace, fair, 2);

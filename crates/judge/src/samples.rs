@@ -46,7 +46,7 @@ pub(crate) fn simulate(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
 }
 
 /// Returns the bytes of `frames`.
-pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
+pub(crate) fn encode_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     frames.iter().for_each(|frame| writer.write_frame(frame));
     writer.finish().expect("written").0
@@ -56,7 +56,7 @@ pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
 pub(crate) fn changed_reference_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let mut frames = simulate(scene, ());
     change(&mut frames);
-    write_frames(scene, &frames)
+    encode_frames(scene, &frames)
 }
 
 /// Returns the outcome by both rule books.

@@ -64,7 +64,7 @@ impl DetectReport<'_> {
                 PairMotion::HalfPlane { .. } => "A particle and a half-plane".to_owned(),
             };
         };
-        write_title(place.pair, place.step, place.trace, place.scene)
+        render_title(place.pair, place.step, place.trace, place.scene)
     }
 
     /// Returns the decision as a sentence. `number` formats the numbers in it.
@@ -187,7 +187,7 @@ impl DetectReport<'_> {
     }
 }
 
-fn write_title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
+fn render_title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     let run = trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
     let title = PairText(pair).to_string();
     let (first, rest) = title.split_at(1);

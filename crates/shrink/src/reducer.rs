@@ -82,7 +82,7 @@ impl Search<'_, '_> {
     /// or `None` if the search must end.
     fn take_smaller(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
-            let (size, xml) = (measure_size(&scene, self.assignment), scene::write(&scene));
+            let (size, xml) = (measure_size(&scene, self.assignment), scene::to_xml(&scene));
             if size >= self.size || self.refuted.contains(&xml) {
                 continue;
             }

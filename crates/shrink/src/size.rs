@@ -126,7 +126,7 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
 /// Returns the number of warnings about a scene, and of its parts that programs of the assignment do not support. For a
 /// scene that cannot be read back, returns the largest number.
 fn count_oddities(scene: &Scene, assignment: Assignment) -> usize {
-    let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
+    let loaded = scene::read("", scene::to_xml(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
     loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_features(assignment).count())
 }
 

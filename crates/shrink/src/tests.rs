@@ -57,8 +57,8 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         let (reason, small) = smallest(assignment, mistake);
         let (scene, student) = (&small.scene, Student::new(Some(find(mistake).expect("a row").mistake)));
         assert!(small.is_minimal, "{mistake}");
-        assert_eq!((scene.step_count(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
-        assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
+        assert_eq!((scene.step_count(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::to_xml(scene));
+        assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::to_xml(scene));
         // The result can also be computed by hand, because it is 0.375 and does not have 17 digits.
         let (_, end) = size::simulate(scene).expect("a result");
         let short = |value: &f64| value.to_string().len() < 9;
@@ -147,6 +147,6 @@ fn no_attempt_makes_a_mass_or_a_radius_negative() {
     });
     let is_real = |scene: &Scene| scene.particles.iter().all(|body| body.mass >= 0.0 && body.radius >= 0.0);
     for attempt in attempts {
-        assert!(is_real(&attempt), "{}", scene::write(&attempt));
+        assert!(is_real(&attempt), "{}", scene::to_xml(&attempt));
     }
 }

@@ -128,7 +128,7 @@ impl ProgramUnderTest {
     pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
         let mut tasks = Vec::new();
         for (name, scene) in diagnose::probe_scenes(self.assignment) {
-            let xml = scene::write(&scene).into_bytes();
+            let xml = scene::to_xml(&scene).into_bytes();
             tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
         }
         // The probe scenes of the default milestone show every term of every formula.
@@ -262,7 +262,7 @@ pub(super) fn report(
 pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let read = |path: &PathBuf| {
         let scene = input::read_scene(path)?;
-        let xml = scene::write(&scene.scene).into_bytes();
+        let xml = scene::to_xml(&scene.scene).into_bytes();
         Ok(SceneTask { name: scene.name, xml, scene: scene.scene, recording: None })
     };
     scenes.iter().map(read).collect()

@@ -123,7 +123,7 @@ pub(super) fn describe(
         origin: origin.clone(),
         command: format!("fosssim-oracle shrink {} {} --step {step} --suite {}", names[0], names[1], names[2]),
         program,
-        xml: scene::write(scene),
+        xml: scene::to_xml(scene),
         bodies: scene.particles.len(),
         steps: scene.step_count(),
         runs: small.runs,

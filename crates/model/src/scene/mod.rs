@@ -35,4 +35,4 @@ pub use model::{
 };
 pub use problem::{MAX_PROBLEMS, Problem, Problems, Severity};
 pub use reader::{LoadedScene, MAX_SCENE_BYTES, read};
-pub use write::{collision_element, integrator_element, write};
+pub use write::{collision_element, integrator_element, to_xml};

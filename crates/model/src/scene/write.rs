@@ -6,12 +6,12 @@ use super::{
 };
 use std::fmt;
 
-/// Writes a scene as XML, one element per line, with every attribute, and every number in the shortest form that reads
+/// Returns a scene as XML, one element per line, with every attribute, and every number in the shortest form that reads
 /// back to the same bits.
 ///
 /// Reading gives an equal scene if the scene is valid and its forces are in the order in which they act. A NaN or an
 /// infinity has no form in XML, and a NUL in a text is written as U+FFFD.
-pub fn write(scene: &Scene) -> String {
+pub fn to_xml(scene: &Scene) -> String {
     let display = &scene.display;
     let mut all = Vec::new();
     all.extend(scene.description.as_deref().map(|text| Element::new("description").text("text", text)));

@@ -1,5 +1,5 @@
 //! The report on a decision of simple collision handling: the overlap, the approach, and the result.
-use super::{AnswerView, DETECT_SCHEMA, DetectView, FormatFn, PlaceView, render_motion, write_title};
+use super::{AnswerView, DETECT_SCHEMA, DetectView, FormatFn, PlaceView, render_motion, render_title};
 use crate::{
     number::format_exact,
     style::{Style, TextStyle},
@@ -30,7 +30,7 @@ pub struct Overlap<'a> {
 impl Overlap<'_> {
     /// Renders the report as text.
     pub fn render_text(&self, style: Style) -> String {
-        style.paint(TextStyle::Strong, &write_title(self.pair, self.step, self.trace, self.scene))
+        style.paint(TextStyle::Strong, &render_title(self.pair, self.step, self.trace, self.scene))
             + "\n"
             + &self.render_body(format_exact, style)
     }

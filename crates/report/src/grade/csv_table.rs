@@ -36,7 +36,7 @@ pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) 
     });
     let head: Vec<String> = head.split(',').map(str::to_owned).collect();
     let rest = empty_rows(skipped_entries, &head, "summary");
-    write_table(head, rows.chain(rest))
+    render_table(head, rows.chain(rest))
 }
 
 /// Renders a table with one row per submission and one column per group. `rules_differ` counts the scenes that the rule
@@ -83,7 +83,7 @@ pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) ->
         row
     });
     let rest = empty_rows(skipped_entries, &head, "reason");
-    write_table(head, rows.chain(rest))
+    render_table(head, rows.chain(rest))
 }
 
 /// Returns rows for skipped entries. The column `reasons` has the reason why each was skipped.
@@ -100,7 +100,7 @@ fn empty_rows(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) 
     skipped_entries.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
 }
 
-fn write_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
+fn render_table(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in std::iter::once(head).chain(rows) {
         // Writing to memory fails only if rows differ in length. These rows have the same length.

@@ -36,11 +36,11 @@ pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::render_lines as json_lines;
 use phrases::describe_repeated_reason;
-pub(crate) use phrases::{count_wrong, describe_wrong_state, detail_likely, likely_heading};
 pub use phrases::{
     describe_difference, describe_in_scene, describe_likely, describe_missing_points, describe_worth,
     find_likely_mistakes, format_optional_points, format_points, format_score, head_lines, scene_lines, scene_sentence,
 };
+pub(crate) use phrases::{describe_wrong_count, describe_wrong_state, detail_likely, likely_heading};
 pub use skipped_entries::{add_warnings, list_not_graded};
 pub(crate) use speed::describe_speed;
 pub use text::{Advice, Text, TextDetail, describe_extra_points, render_table as text_table, shorten_name};

@@ -16,7 +16,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
         return vec![unfit];
     }
-    let wrong = count_wrong(grade);
+    let wrong = describe_wrong_count(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
         let what = describe_likely(grade, &mistake) + &describe_note(grade, &mistake);
@@ -129,7 +129,7 @@ pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
 }
 
 /// Returns the number of scenes with wrong traces as text, such as `12 wrong scenes`.
-pub(crate) fn count_wrong(grade: &Grade) -> String {
+pub(crate) fn describe_wrong_count(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     format_count(wrong.count() as u64, "wrong scene")
 }

@@ -2,7 +2,7 @@
 use super::{
     grade_page::scene_key,
     heat, histogram,
-    markup::{count_scenes, render_data, render_note},
+    markup::{format_scene_count, render_data, render_note},
     render_document, render_template,
     smallest::{format_pre, list_parts},
 };

@@ -44,7 +44,7 @@ impl askama::filters::Escaper for PageText {
 }
 
 /// Formats a number of scenes, such as `3 scenes`.
-pub(super) fn count_scenes(count: usize) -> String {
+pub(super) fn format_scene_count(count: usize) -> String {
     format_count(count as u64, "scene")
 }
 

@@ -3,8 +3,8 @@ use crate::{
     fair::{FairRejection, FairVerdict, Judgment, context::Context},
     finding::{FindingDetail, FindingKind},
     samples::{
-        BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, judge_by_both, replace_polynomials, scene, simulate,
-        write_frames,
+        BOUNCE_SCENE, ZONES_SCENE, changed_reference_trace, encode_frames, judge_by_both, replace_polynomials, scene,
+        simulate,
     },
 };
 use fosssim_model::{
@@ -70,7 +70,7 @@ fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
         let distance = distance(&simulate(&scene, ()), &frames);
         if distance > 1e-7 {
             changed += 1;
-            let judged = fair(&scene, &write_frames(&scene, &frames));
+            let judged = fair(&scene, &encode_frames(&scene, &frames));
             assert_eq!(judged.verdict, FairVerdict::Rejected, "{name}: states are {distance} off");
         }
     }
@@ -97,7 +97,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
-        let judged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Factors(|_, _| 1, 0)))));
+        let judged = fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Factors(|_, _| 1, 0)))));
         assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.findings.first_divergence);
     }
 }
@@ -137,9 +137,9 @@ fn an_impact_in_short_numbers_on_an_edge_at_rest_is_certain() {
         }
     }
     let scene = scene(text);
-    let early = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Early))));
+    let early = fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Early))));
     assert_eq!(early.findings.counts.get(FindingKind::MissedCollision), 1, "{early:?}");
-    assert_eq!(fair(&scene, &write_frames(&scene, &simulate(&scene, ()))).verdict, FairVerdict::Accepted);
+    assert_eq!(fair(&scene, &encode_frames(&scene, &simulate(&scene, ()))).verdict, FairVerdict::Accepted);
 }
 
 /// Round-off may change whether the pair collides, but not the normal and the time of the contact.
@@ -148,10 +148,10 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
     let with = |time, x, y| {
         let hit = Decision::Hit { time, normal: Vec2::new(x, y) };
-        fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(hit))))))
+        fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(hit))))))
     };
     let miss = Decision::Miss { time: ImpactTime::None };
-    let without = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(miss))))));
+    let without = fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(miss))))));
     let right = with(1.0, -0.06, -0.08);
     assert_eq!(
         (without.verdict, right.verdict),
@@ -343,7 +343,7 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     );
     let frames = simulate(&scene, ());
     assert!(frames.iter().any(|frame| !frame.state.velocities.iter().all(|v| v.is_finite())));
-    assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted);
+    assert_eq!(fair(&scene, &encode_frames(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
 /// Balls rest on each other, so every approach polynomial is zero except for round-off. A trace in which all signs are
@@ -362,9 +362,9 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
             polynomials[1] = Polynomial::trimmed(&[1.0]);
         }
     }
-    let plain = fair(&scene, &write_frames(&scene, &simulate(&scene, ())));
+    let plain = fair(&scene, &encode_frames(&scene, &simulate(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
-    let forged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Push))));
+    let forged = fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Push))));
     assert_eq!(forged.rejection, Some(FairRejection::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
@@ -453,7 +453,7 @@ fn dropped_coefficients_do_not_mix_forms() {
     assert!(simulate(&stretched, ()).iter().any(|frame| frame.polynomials.iter().any(is_slip)));
     for (name, scene) in assets().into_iter().chain([("stretched".to_owned(), stretched)]) {
         for factor in [1e-2, 1e-4, 1e-6, 1e-8] {
-            let judged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Edges(factor)))));
+            let judged = fair(&scene, &encode_frames(&scene, &simulate(&scene, SteeringObserver(Edges(factor)))));
             let counts = &judged.findings.counts;
             let lost = counts.get(FindingKind::TrimmedDecision);
             assert_eq!(counts.total(), lost, "{factor} in {name}: {:?}", judged.findings.first_divergence);
@@ -549,11 +549,11 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
         let count = contacts(&frames);
         assert_eq!(contacts(&simulate(&scene, ())), 1 - count);
         decided[count] += 1;
-        assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
+        assert_eq!(fair(&scene, &encode_frames(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
         for impulse in frames.iter_mut().flat_map(|frame| &mut frame.impulses) {
             impulse.normal.x += 1e-9;
         }
-        let is_rejected = fair(&scene, &write_frames(&scene, &frames)).verdict == FairVerdict::Rejected;
+        let is_rejected = fair(&scene, &encode_frames(&scene, &frames)).verdict == FairVerdict::Rejected;
         assert_eq!(is_rejected, count == 1, "with another normal: {text}");
     }
     assert!(decided.iter().all(|count| *count > 0), "{decided:?}");

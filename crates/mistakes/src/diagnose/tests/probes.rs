@@ -6,7 +6,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     assignments::Assignment,
-    scene::{Scene, original, read, write},
+    scene::{Scene, original, read, to_xml},
     sim::{Decision, Detection, Observer, PairKind, PairKindMap, RootSearch, Simulation},
 };
 use fosssim_student::assignments::probe_scenes;
@@ -17,7 +17,7 @@ fn both_readers_give_the_scenes_back() {
     let scenes = probe_scenes(Assignment::T2M2);
     assert!(scenes.len() >= 12);
     for (name, scene) in &scenes {
-        let text = write(scene);
+        let text = to_xml(scene);
         let strict = read(name, text.as_bytes()).unwrap_or_else(|problems| panic!("{name}: {problems:?}"));
         assert_eq!(strict.scene, *scene, "{name}");
         let lenient = original::read(text.as_bytes()).unwrap_or_else(|refusal| panic!("{name}: {refusal}"));

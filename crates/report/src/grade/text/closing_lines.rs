@@ -4,7 +4,7 @@ use super::{Text, verdict_style};
 use crate::untrusted_text::{strip_control_characters, to_one_line};
 use crate::{
     grade::{
-        change_lines, count_wrong, describe_likely, describe_speed, describe_worth, detail_likely,
+        change_lines, describe_likely, describe_speed, describe_worth, describe_wrong_count, detail_likely,
         find_likely_mistakes, format_optional_points, format_points, group_by_cause, likely_heading,
     },
     number::format_count,
@@ -39,7 +39,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     }
     // A fault of the whole submission explains what is wrong in all groups.
     let mistakes = if grade.submission_fault().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
-    let wrong = count_wrong(grade);
+    let wrong = describe_wrong_count(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
             let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, likely_heading(&mistakes)));
