@@ -33,7 +33,7 @@ pub struct GradeChanges<'a> {
     pub newly_right: Vec<&'a SceneGrade>,
     /// The scenes that were accepted before and are not now.
     pub newly_wrong: Vec<&'a SceneGrade>,
-    /// The scenes that were not accepted before and are not now, but have another verdict. Each has the earlier
+    /// The scenes that were not accepted before and are not now, but have another verdict, each with its earlier
     /// verdict.
     pub other_changes: Vec<(&'a SceneGrade, Verdict)>,
 }

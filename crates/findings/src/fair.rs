@@ -11,7 +11,7 @@ pub enum FairVerdict {
     Accepted,
     /// The trace breaks a rule.
     Rejected,
-    /// Judging stopped early, and no fault was found before.
+    /// Judging stopped early, before a fault was found.
     #[default]
     None,
 }

@@ -40,7 +40,7 @@ pub struct SmallestScene {
 }
 
 impl SmallestScene {
-    /// Returns the size of the scene. Scenes are compared by it.
+    /// Returns the size of the scene, by which scenes are compared.
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }

@@ -65,12 +65,12 @@ formats! {
         |grades, skipped| {
             github::render_annotations(grades) + &github::warn_of_skipped(class_entries(grades, skipped))
         };
-    /// A table for spreadsheets with one row per scene.
+    /// A summary in Markdown, for example of a step in GitHub Actions.
     Markdown "markdown" true
         |grades, skipped| {
             github::render_summary(grades) + &github::list_skipped(class_entries(grades, skipped))
         };
-    /// One row per scene, for spreadsheets.
+    /// A CSV table for spreadsheets, with one row per scene.
     Csv "csv" true csv_table::render_scenes;
     /// A page in a single file ([`page::GradePage`](crate::page::GradePage)). This function renders it without
     /// pictures, because these are stored on disk.

@@ -1,4 +1,4 @@
-//! Cleans untrusted text, such as names and the output of programs. Control characters become visible, and invisible
+//! Cleans untrusted text, such as names and programs' output. Control characters become visible, and invisible
 //! characters are replaced. Each format then escapes the characters that have a meaning in its syntax.
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;

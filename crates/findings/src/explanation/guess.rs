@@ -44,7 +44,7 @@ impl Guess {
     }
 }
 
-/// Returns a digest of a text (FNV-1a), which is the same on every machine.
+/// Returns the FNV-1a digest of a string, which is the same on every machine.
 pub fn hash_key(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }

@@ -11,8 +11,8 @@ use std::{cmp::Reverse, collections::BTreeMap};
 pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 
 /// Returns the listed scenes, grouped by cause. Causes that cost more than extra points are first; among them, causes
-/// with likely mistakes, then causes by the number of their scenes. Skipped scenes follow, and then accepted scenes on
-/// which the rule books differ.
+/// with likely mistakes, then causes by the number of their scenes. Skipped scenes follow, and then accepted scenes
+/// that the rule books judge differently.
 pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();

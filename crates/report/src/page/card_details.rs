@@ -4,7 +4,7 @@ use super::{Card, script};
 /// The maximum size of a page, in bytes. Pages are sent by mail, and opened on old machines.
 pub const PAGE_BUDGET: usize = 2_950_000;
 
-/// The maximum number of bytes on a page for the output of programs, in all scenes together.
+/// The maximum number of bytes on a page for the programs' output, in all scenes together.
 pub(super) const OUTPUT_BUDGET: usize = 200_000;
 
 /// The part of the size limit that pictures and tables may use before the first motion gets space.

@@ -96,7 +96,7 @@ struct GradeContent<'a> {
     has_scenes: bool,
     /// Whether the table of groups holds more than zeros.
     has_groups: bool,
-    /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
+    /// Whether nothing is wrong. Scenes are then listed only because the rule books judge them differently.
     is_accepted: bool,
     /// The number of columns of the table of groups.
     columns: usize,

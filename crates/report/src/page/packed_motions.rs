@@ -2,7 +2,7 @@
 //! too much space become rounded positions.
 //!
 //! A rounded motion is a block of bytes. It begins with the number of exact records as an 8-byte integer, and these
-//! records as doubles. For each record and each coordinate follows the difference from the previous record, in units.
+//! records as doubles. For each record and each coordinate, the difference from the previous record follows, in units.
 //! The difference is zigzag-coded, with seven bits per byte and the lowest bits first (as Protocol Buffers code
 //! integers). All numbers are little-endian.
 use base64::Engine;

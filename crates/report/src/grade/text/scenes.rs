@@ -22,7 +22,7 @@ const MAX_DESCRIBED: usize = 3;
 /// The maximum number of scenes that are named if they end in the same way.
 const MAX_NAMED: usize = 3;
 
-/// Renders the groups in which there is something to show.
+/// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     // A fault of the whole submission is reported once, and not for each scene.
     if options.detail < TextDetail::Wrong || grade.submission_fault().is_some() {
@@ -91,7 +91,7 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted. It is either accepted, was not run, or has the same cause as another
+    /// Returns whether a scene is only counted, because it is accepted, was not run, or has the same cause as another
     /// scene that is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.detail < TextDetail::All
