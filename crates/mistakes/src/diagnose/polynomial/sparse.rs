@@ -4,6 +4,7 @@
 //! orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar
 //! Conference, 1993). The result is a proposal, which the caller must check against every sample.
 
+use fosssim_num::vector::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// A proposal, which consists of ascending column indices and their weights.
@@ -217,10 +218,6 @@ impl FitProblem<'_> {
             partial.explained = before;
         }
     }
-}
-
-fn dot(one: &[f64], two: &[f64]) -> f64 {
-    one.iter().zip(two).map(|(one, two)| one * two).sum()
 }
 
 #[cfg(test)]
