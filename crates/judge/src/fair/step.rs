@@ -63,7 +63,7 @@ fn follow(context: &Context<'_>, simulation: &mut Simulation, records: Records<'
     let follower = Follower::new(context, records, None, &[]).prefer_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
-        // The submission may also make the decisions that the root finder makes for right polynomials.
+        // The submission might also make the decisions that the root finder makes for right polynomials.
         (first, decisions, ..) = attempt(simulation, None, &[])?;
     }
     if !first.may_be_round_off() {

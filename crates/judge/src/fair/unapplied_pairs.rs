@@ -192,8 +192,8 @@ fn contest_layer(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     Some((all_pairs, due))
 }
 
-/// Finds, particle by particle, the only choice of pairs that explains the particle's velocity. Each explained particle
-/// reduces the choices of its neighbors.
+/// Finds, particle by particle, the unique choice of pairs that explains the particle's velocity, and stores it in
+/// `candidates` and `rest`. Each explained particle reduces the choices of its neighbors.
 fn find_unique_choice(
     candidates: &mut [NearPair],
     particle_candidates: &[Vec<usize>],

@@ -140,8 +140,8 @@ impl Suites {
         }
     }
 
-    /// Returns the suites' names and titles; empty if the grader can't be called.
-    pub fn titles(&self) -> impl Iterator<Item = (&str, &str)> {
+    /// Returns the name and the title of each suite; empty if the grader can't be called.
+    pub fn names_and_titles(&self) -> impl Iterator<Item = (&str, &str)> {
         self.entries.iter().map(|suite| (suite.name.as_str(), suite.title.as_str()))
     }
 

@@ -43,8 +43,9 @@ pub(super) async fn list_suites(staff: &Staff, settings: &Settings) -> Result<Ve
     let mut suites: Vec<SuiteOption> = uploaded.iter().map(option).collect();
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
-    let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.titles().all(|(name, _)| name != *suite));
-    for (name, title) in known.titles().chain(other) {
+    let other = Some((settings.suite.as_str(), ""))
+        .filter(|(suite, _)| known.names_and_titles().all(|(name, _)| name != *suite));
+    for (name, title) in known.names_and_titles().chain(other) {
         let text = match (name, title) {
             ("", _) => "the grader's default".to_owned(),
             (name, "") => name.to_owned(),
