@@ -30,7 +30,8 @@ const HUNDREDS: [(&str, usize); 22] = [
     // exclude each other, and guesses that other traces contradict, are not reported; nothing was removed for it.
     // Pairs that a program leaves out, and faults that traces share; nothing was removed for them.
     // Wrong radii are reported by their values; nothing was removed for that.
-    ("mistakes", 67),
+    // Wrong states name the part of the student's code; the table of causes of each milestone went.
+    ("mistakes", 68),
     // The least work of Newton's iterations; the search for nearby pairs without a contest went.
     ("model", 87),
     ("num", 37),

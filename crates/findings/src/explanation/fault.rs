@@ -1,8 +1,12 @@
 //! Faults in a stage of a step that no known mistake explains. The measured values are in
 //! [`StageDetail`](super::StageDetail).
 use super::area::Area;
-use fosssim_model::sim::PairKind;
+use fosssim_model::{
+    assignments::{ForceKind, Part},
+    sim::PairKind,
+};
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The stages of a step that can be distinguished, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -104,7 +108,7 @@ pub enum StageFault {
 }
 
 /// The common properties of wrong changes of states.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongChange {
     /// The quantity that is wrong. If positions are wrong, velocities are right. If velocities are wrong, positions
     /// agree with the wrong velocities.
@@ -115,25 +119,31 @@ pub struct WrongChange {
     pub particles: ChangedParticles,
     /// The factor between the actual and the right changes.
     pub ratio: ChangeRatio,
-    /// The part of the student's code that makes these changes.
-    pub cause: ChangeCause,
+    /// The parts of the student's code that may make these changes. Each acts on all particles that change wrongly; if
+    /// no part does, these are the parts that act anywhere in the scene.
+    #[serde(default)]
+    pub parts: BTreeSet<Part>,
 }
 
-/// The part of a student's code that changes states.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ChangeCause {
-    /// The responses to simple collisions.
-    Response,
-    /// The penalty force.
-    Penalty,
-    /// The forces, without the penalty force.
-    Forces,
-    /// The integrator, which computes new positions and velocities from the forces.
-    Integrator,
-    /// The forces or the integrator, which the trace does not distinguish.
-    ForcesOrIntegrator,
-    /// The derivatives of forces, or the integrator. The trace cannot distinguish the two.
-    JacobiansOrIntegrator,
+impl WrongChange {
+    /// Returns whether one wrong part of the student's code may make both the changes of `self` and those of `other`.
+    pub fn may_share_part(&self, other: &Self) -> bool {
+        self.quantity == other.quantity && !self.parts.is_disjoint(&other.parts)
+    }
+
+    /// Returns the names of the parts of the student's code. Forces come before integrators.
+    pub fn part_names(&self) -> Vec<String> {
+        self.parts.iter().rev().copied().map(name_part).collect()
+    }
+
+    /// Returns whether `self`, which is what several traces have in common, describes what `other` describes for one of
+    /// these traces.
+    pub fn includes(&self, other: &Self) -> bool {
+        self.may_share_part(other)
+            && (self.axis.is_none() || self.axis == other.axis)
+            && (self.particles == ChangedParticles::Any || self.particles == other.particles)
+            && (self.ratio == ChangeRatio::Other || self.ratio == other.ratio)
+    }
 }
 
 fosssim_num::closed_set! {
@@ -356,6 +366,25 @@ fosssim_num::closed_set! {
     }
 }
 
+fn name_part(part: Part) -> String {
+    let force = |kind: ForceKind| match kind {
+        ForceKind::Spring => "spring force",
+        ForceKind::SimpleGravity => "simple gravity",
+        ForceKind::Gravitation => "gravitational force",
+        ForceKind::Constant => "constant force",
+        ForceKind::Drag => "drag force",
+        ForceKind::Vortex => "vortex force",
+    };
+    match part {
+        Part::Integrator(integrator) => format!("{} integrator", integrator.name()),
+        Part::Force(kind) => force(kind).to_owned(),
+        Part::Jacobians(kind) => format!("derivatives of the {}", force(kind)),
+        Part::Penalty(kind) => format!("{} penalty force", kind.name()),
+        Part::SimpleResponse(kind) => format!("{} response", kind.name()),
+        _ => part.file().to_owned(),
+    }
+}
+
 impl StageFault {
     /// Returns the stage of the step in which the fault is.
     pub const fn stage(&self) -> StepStage {
@@ -380,18 +409,23 @@ impl StageFault {
     }
 
     /// Returns the parts of the assignment in which the mistake may be.
-    pub const fn areas(&self) -> &'static [Area] {
+    pub fn areas(&self) -> Vec<Area> {
+        let Self::Change(WrongChange { parts, .. }) = self else { return self.fixed_areas().to_vec() };
+        let area = |part: &Part| match part {
+            Part::Integrator(_) => Area::Integrator,
+            Part::Jacobians(_) => Area::Jacobians,
+            Part::Penalty(_) => Area::Penalty,
+            Part::SimpleResponse(_) => Area::Response,
+            _ => Area::Forces,
+        };
+        parts.iter().rev().map(area).collect()
+    }
+
+    const fn fixed_areas(&self) -> &'static [Area] {
         match self {
+            Self::Change(_) => &[],
             Self::Order | Self::Decisions { .. } | Self::ContactTimes => &[Area::Decision],
             Self::Overlaps { .. } => &[Area::SimpleDetection],
-            Self::Change(WrongChange { cause, .. }) => match cause {
-                ChangeCause::Response => &[Area::Response],
-                ChangeCause::Penalty => &[Area::Penalty],
-                ChangeCause::Forces => &[Area::Forces],
-                ChangeCause::Integrator => &[Area::Integrator],
-                ChangeCause::ForcesOrIntegrator => &[Area::Forces, Area::Integrator],
-                ChangeCause::JacobiansOrIntegrator => &[Area::Jacobians, Area::Integrator],
-            },
             Self::ContactVectors { .. } => &[Area::ContactVector],
             Self::Responses { only_in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
             // In a hybrid step, the trace contains no contact vector.

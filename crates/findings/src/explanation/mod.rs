@@ -14,9 +14,9 @@ pub use area::Area;
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity,
-    RoundCountError, StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongPositions,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity, RoundCountError,
+    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongPositions, WrongResponses,
+    WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;

@@ -248,9 +248,8 @@ pub(super) fn generalize_fault(reported: &mut Explanation, traces: &[&[Explanati
             {
                 *wrong = WrongVectors::Direction;
             }
-            (StageFault::Change(own), StageFault::Change(other))
-                if (own.cause, own.quantity) == (other.cause, other.quantity) =>
-            {
+            (StageFault::Change(own), StageFault::Change(other)) if own.may_share_part(other) => {
+                own.parts.retain(|part| other.parts.contains(part));
                 own.axis = own.axis.filter(|_| own.axis == other.axis);
                 own.particles = if own.particles == other.particles { own.particles } else { ChangedParticles::Any };
                 let is_same = own.ratio == other.ratio && (own.ratio != ChangeRatio::Factor || one.details == *details);

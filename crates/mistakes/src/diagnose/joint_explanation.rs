@@ -4,10 +4,11 @@ use super::{
     Explanation, Guess,
     evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest, generalize_fault},
     explain::is_formula_area,
-    fault::StepStage,
+    fault::{StageFault, StepStage},
     known::is_empty_stage,
     naming::{explain_zero_coefficients, is_named_in},
     near_pairs,
+    student_code::may_contain,
     topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_student::{Area, CATALOG, Mistake, Row, StepMistake, assignments::t2m2::Subject, find};
@@ -233,14 +234,16 @@ fn is_repetition(found: &[Explanation], next: &Explanation, traces: &[OpenTrace]
         };
         let share_stage = match (&explanation.topic, &next.topic) {
             (ExplanationTopic::Stage(explanation), ExplanationTopic::Stage(next)) => {
-                let are_of_two_kinds =
-                    explanation.kind().zip(next.kind()).is_some_and(|(explanation, next)| explanation != next);
-                explanation.stage() == next.stage() && !are_of_two_kinds
+                let are_apart = match (explanation, next) {
+                    (StageFault::Change(explanation), StageFault::Change(next)) => !explanation.may_share_part(next),
+                    _ => explanation.kind().zip(next.kind()).is_some_and(|(explanation, next)| explanation != next),
+                };
+                explanation.stage() == next.stage() && !are_apart
             }
             (_, ExplanationTopic::Stage(fault)) => find(&explanation.key).is_some_and(|row| {
-                fault.areas().contains(&row.area) || area_stage(row.area).is_some_and(|stage| stage <= fault.stage())
+                may_contain(fault, row) || area_stage(row.area).is_some_and(|stage| stage <= fault.stage())
             }),
-            (ExplanationTopic::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
+            (ExplanationTopic::Stage(fault), _) => find(&next.key).is_some_and(|row| may_contain(fault, row)),
             _ => false,
         };
         let is_vector_row = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();

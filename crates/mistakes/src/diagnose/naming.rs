@@ -1,6 +1,8 @@
 //! Decides whether explanations are about the same mistake.
 use super::{
     Guess, ListGuess,
+    fault::StageFault,
+    student_code::may_contain,
     topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_findings::explanation::{Detail, Explanation};
@@ -68,7 +70,17 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         return explanations.iter().any(|explanation| is_about(explanation) && says_so(explanation));
     }
     let statement = mistake.statement();
-    explanations.iter().any(|explanation| alternative_statements(explanation).contains_key(&statement))
+    let is_likewise = |explanation: &Explanation| match (&mistake.topic, &explanation.topic) {
+        (ExplanationTopic::Stage(StageFault::Change(all)), ExplanationTopic::Stage(StageFault::Change(own))) => {
+            all.includes(own)
+        }
+        // Other traces contradict a known mistake if they share only the fault of its code.
+        (ExplanationTopic::Stage(fault @ StageFault::Change(_)), ExplanationTopic::Mistake) => {
+            find(&explanation.key).is_some_and(|row| may_contain(fault, row))
+        }
+        _ => alternative_statements(explanation).contains_key(&statement),
+    };
+    explanations.iter().any(is_likewise)
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace. These are

@@ -1,5 +1,6 @@
 //! Decides which mistakes a student of a milestone can make. These are the mistakes in the parts that the student
 //! writes.
+use super::fault::StageFault;
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,
@@ -19,6 +20,17 @@ pub fn is_written_by_student(row: &Row, whose: Assignment) -> bool {
         _ => false,
     };
     whose.definition().student.iter().any(is_of)
+}
+
+/// Returns whether the mistake of `row` is in the code that may contain `fault`.
+pub(super) fn may_contain(fault: &StageFault, row: &Row) -> bool {
+    match (fault, row.mistake) {
+        // A row about all kinds of pairs has the part of one of them.
+        (StageFault::Change(change), Mistake::Step(_)) if changed_term(row) != Term::Penalty => {
+            change.parts.contains(&changed_term(row).row().part)
+        }
+        _ => fault.areas().contains(&row.area),
+    }
 }
 
 /// Returns the term that a mistake changes; the row's id begins with its name.

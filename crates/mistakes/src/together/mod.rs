@@ -85,7 +85,7 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
 /// extra points are not included.
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     // The simulator cannot make an unknown mistake.
-    if mistake.is_unexplained() {
+    if mistake.is_unexplained() || mistake.names_stage() {
         return 0.0;
     }
     let is_mended = |scene: &SceneGrade| {

@@ -1,8 +1,9 @@
 //! The kinds of forces (simulation.md 3).
+use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
     /// A kind of force. The scene readers define how it is written in a scene.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum ForceKind {
         /// A spring along an edge, with damping.
         Spring,

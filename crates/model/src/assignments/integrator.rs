@@ -1,8 +1,9 @@
 //! The time integrators of scenes (scene-format.md 4).
+use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
     /// A time integrator (simulation.md 4), with its name in scenes.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Integrator {
         /// Positions and velocities are computed only from the start of the step.
         ExplicitEuler = "explicit-euler",

@@ -1,8 +1,9 @@
 //! The parts of an assignment that a student writes. The starter library does the rest.
 use super::{ForceKind, Integrator, PairKind};
+use serde::{Deserialize, Serialize};
 
 /// A part of a student's work: a function, or a few related functions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum Part {
     /// The kinetic energy, which traces do not contain.
     KineticEnergy,

@@ -63,12 +63,17 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
 /// Returns whether a mistake in forces, integrators, penalties or simple responses may show in the scene.
 fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = changed_term(row);
+    let has_penalty = matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. });
+    if term == Term::Penalty { has_penalty } else { has_effect(scene, counts, term.row().part) }
+}
+
+/// Returns whether a part of the student's code, which changes states, may have an effect in the scene.
+pub(in crate::diagnose) fn has_effect(scene: &Scene, counts: &PairKindMap<usize>, part: Part) -> bool {
     let has_force = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
     let is_implicit = matches!(scene.integrator, Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler);
     let is_simple = matches!(scene.collision, Collision::Simple { .. });
     let has_penalty = matches!(scene.collision, Collision::Penalty { .. } | Collision::Hybrid { .. });
-    match term.row().part {
-        _ if term == Term::Penalty => has_penalty,
+    match part {
         Part::Force(kind) => has_force(kind),
         Part::Jacobians(kind) => is_implicit && has_force(kind),
         Part::Integrator(integrator) => scene.integrator == integrator,

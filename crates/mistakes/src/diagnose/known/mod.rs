@@ -18,6 +18,7 @@ mod resimulate;
 mod trials;
 mod visibility;
 
+pub(super) use applicable_rows::has_effect;
 pub use applicable_rows::may_change_trace;
 pub(super) use combinations::is_empty_stage;
 pub use visibility::mistake_is_visible;

@@ -1,13 +1,15 @@
 //! If no known mistake explains wrong states, the first wrong quantity is reported.
 use crate::diagnose::{
-    ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, ExplanationTopic, Quantity, StageDetail,
-    StageFault, WrongChange, WrongDecisions, explain, explain_together, mistake_is_visible, refuted_keys,
+    ChangeRatio, ChangedParticles, Detail, Explanation, ExplanationTopic, Quantity, StageDetail, StageFault,
+    WrongChange, WrongDecisions, correct_trace, explain, explain_together, mistake_is_visible, refuted_keys,
 };
 use fosssim_model::{
+    assignments::{ForceKind, Integrator, Part},
     scene::{Scene, original},
     sim::PairKind,
 };
 use fosssim_student::{self as student, Student, find};
+use std::collections::BTreeSet;
 
 const FALL: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
     <simplegravity fx="0.1" fy="-0.8"/>
@@ -48,7 +50,7 @@ fn wrong_positions_are_reported_with_their_factor() {
         axis: None,
         particles: ChangedParticles::Any,
         ratio: ChangeRatio::Factor,
-        cause: ChangeCause::Integrator,
+        parts: BTreeSet::from([Part::Integrator(Integrator::ExplicitEuler)]),
     };
     assert_eq!(*wrong, expected);
     let [Detail::Stage(StageDetail::Factor(factor))] = details[..] else { panic!("{details:#?}") };
@@ -96,6 +98,42 @@ fn a_right_collision_contradicts_an_empty_response() {
     assert!(mistake_is_visible(&scene(BALLS), "respond-particles-missing"));
 }
 
+/// A spring acts on the first two bodies, and gravitation on the last two.
+const CHAIN: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
+    <particle m="2" px="-1" py="0" vx="0.3" vy="0.5" fixed="0" radius="0.1"/>
+    <particle m="3" px="1" py="0.4" vx="-0.2" vy="1" fixed="0" radius="0.1"/>
+    <particle m="4" px="3" py="0.1" vx="0" vy="0" fixed="0" radius="0.1"/>
+    <edge i="0" j="1" radius="0.02"/><springforce edge="0" k="2" l0="1.2" b="0.3"/>
+    <gravitationalforce i="1" j="2" G="0.5"/></scene>"#;
+
+/// Only the spring acts on both bodies whose velocities are wrong. The integrator is not the student's.
+#[test]
+fn the_force_that_acts_on_all_wrong_bodies_is_named() {
+    let stretched = right(&scene(&CHAIN.replace("1.2", "1.9")));
+    let told = explain(&scene(CHAIN), &stretched);
+    let [Explanation { topic: ExplanationTopic::Stage(StageFault::Change(wrong)), .. }] = &told[..] else {
+        panic!("{told:#?}")
+    };
+    assert_eq!(wrong.parts, BTreeSet::from([Part::Force(ForceKind::Spring)]));
+}
+
+/// Under an integrator of the student, one scene cannot distinguish it from the forces. Several scenes can.
+#[test]
+fn several_scenes_distinguish_a_force_from_an_integrator() {
+    let symplectic = CHAIN.replace("explicit", "symplectic");
+    let told = |text: &str| explain(&scene(text), &right(&scene(&text.replace("1.2", "1.9"))));
+    let (one, other) = (told(&symplectic), told(CHAIN));
+    let parts = |explanation: &Explanation| match &explanation.topic {
+        ExplanationTopic::Stage(StageFault::Change(wrong)) => wrong.parts.len(),
+        _ => 0,
+    };
+    assert_eq!([parts(&one[0]), parts(&other[0])], [2, 1]);
+    let together = explain_together([one.as_slice(), &other], &[]);
+    assert!(together.len() == 1 && parts(&together[0]) == 1, "{together:#?}");
+    let corrected = correct_trace(&one, &together, &[]).explanations;
+    assert!(corrected.len() == 1 && parts(&corrected[0]) == 1, "{corrected:#?}");
+}
+
 /// All pairs of mistakes are tried on each trace, so an unexplained trace contradicts both of two rivals.
 #[test]
 fn two_rivals_do_not_protect_each_other() {
@@ -110,6 +148,11 @@ fn two_rivals_do_not_protect_each_other() {
     let wrong = [&rivals[0][..], &rivals[1], &open].map(|list| (&scene, list));
     let refuted = refuted_keys(None, &wrong, &[]);
     assert!(refuted.iter().any(|key| key == "gravitation-own-mass"), "{refuted:?}");
+    // Only the force itself explains all three traces, so each trace names the force.
+    let together = explain_together([rivals[0].as_slice(), &rivals[1], &open], &refuted);
+    assert!(together.len() == 1 && together[0].names_stage(), "{together:#?}");
+    let corrected = correct_trace(&rivals[0], &together, &[]).explanations;
+    assert!(corrected.len() == 1 && corrected[0].topic == together[0].topic, "{corrected:#?}");
 }
 
 /// With wrong second derivatives Newton's method does not converge on the second scene. Where such a program ends its

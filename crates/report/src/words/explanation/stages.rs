@@ -2,10 +2,13 @@
 use super::capitalize;
 use crate::number::format_g;
 use fosssim_mistakes::diagnose::{
-    Amount, ChangeCause, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
-    WrongGeometric, WrongResponses,
+    Amount, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange, WrongGeometric,
+    WrongResponses,
 };
-use fosssim_model::sim::PairKind;
+use fosssim_model::{assignments::Part, sim::PairKind};
+
+/// The maximum number of parts of an assignment that are named singly.
+const MAX_NAMED_PARTS: usize = 2;
 
 /// Describes the fault of a stage. The sentence begins with the place of the fault.
 pub(super) fn describe(fault: &StageFault) -> String {
@@ -15,7 +18,10 @@ pub(super) fn describe(fault: &StageFault) -> String {
 /// Names the parts of the assignment that may contain the fault. If the fault concerns only one kind of pair, the kind
 /// is named.
 fn name_areas(fault: &StageFault) -> String {
-    let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
+    let areas: Vec<String> = match fault {
+        StageFault::Change(wrong) if wrong.parts.len() <= MAX_NAMED_PARTS => wrong.part_names(),
+        _ => distinct(fault.areas().iter().map(|area| area.name().to_lowercase())),
+    };
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
         _ => areas.concat(),
@@ -86,7 +92,7 @@ fn describe_fault(fault: &StageFault) -> String {
 fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right"),
-        Quantity::Velocity if wrong.cause == ChangeCause::Response => {
+        Quantity::Velocity if wrong.parts.iter().any(|part| matches!(part, Part::SimpleResponse(_))) => {
             ("velocities", "collisions are detected correctly")
         }
         Quantity::Velocity => ("velocities", "positions are updated correctly from velocities"),

@@ -1,12 +1,15 @@
 //! Tests all sentences of explanations.
 use super::*;
 use fosssim_mistakes::diagnose::{
-    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
-    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError,
+    Amount, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage,
+    NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError,
     StageDetail, StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion,
     WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
-use fosssim_model::sim::PairKind;
+use fosssim_model::{
+    assignments::{ForceKind, Integrator, Part},
+    sim::PairKind,
+};
 use fosssim_student::{
     all_rows,
     assignments::t2m2::{NAMED_EDITS, Reading, Subject},
@@ -46,20 +49,30 @@ fn guesses() -> Vec<Guess> {
 }
 
 /// Returns wrong changes of states.
-fn changes() -> [WrongChange; 4] {
-    let change = WrongChange {
-        quantity: Quantity::Position,
+fn changes() -> [WrongChange; 6] {
+    let velocity = Quantity::Velocity;
+    let change = |parts: &[Part]| WrongChange {
+        quantity: velocity,
         axis: None,
         particles: ChangedParticles::Any,
         ratio: ChangeRatio::Factor,
-        cause: ChangeCause::Integrator,
+        parts: parts.iter().copied().collect(),
     };
-    let (velocity, nothing) = (Quantity::Velocity, ChangeRatio::Nothing);
+    let integrator = Part::Integrator(Integrator::SymplecticEuler);
+    let position = || WrongChange { quantity: Quantity::Position, ..change(&[integrator]) };
+    let all = ForceKind::ALL.map(Part::Jacobians);
+    let edges = change(&[Part::SimpleResponse(PairKind::ParticleEdge)]);
     [
-        change,
-        WrongChange { axis: Some(1), ratio: ChangeRatio::Other, ..change },
-        WrongChange { quantity: velocity, particles: ChangedParticles::Fixed, ratio: nothing, ..change },
-        WrongChange { quantity: velocity, ratio: ChangeRatio::Opposite, cause: ChangeCause::Response, ..change },
+        position(),
+        WrongChange { axis: Some(1), ratio: ChangeRatio::Other, ..position() },
+        WrongChange {
+            particles: ChangedParticles::Fixed,
+            ratio: ChangeRatio::Nothing,
+            ..change(&[integrator, Part::Force(ForceKind::Spring)])
+        },
+        WrongChange { ratio: ChangeRatio::Opposite, ..edges },
+        WrongChange { ratio: ChangeRatio::Other, ..change(&[Part::Penalty(PairKind::ParticleHalfPlane)]) },
+        WrongChange { ratio: ChangeRatio::Other, ..change(&all) },
     ]
 }
 
