@@ -376,7 +376,7 @@ fn name_part(part: Part) -> String {
         ForceKind::Vortex => "vortex force",
     };
     match part {
-        Part::Integrator(integrator) => format!("{} integrator", integrator.name()),
+        Part::Integrator(integrator) => integrator.name().replace("-euler", " Euler"),
         Part::Force(kind) => force(kind).to_owned(),
         Part::Jacobians(kind) => format!("derivatives of the {}", force(kind)),
         Part::Penalty(kind) => format!("{} penalty force", kind.name()),
