@@ -367,18 +367,10 @@ fosssim_num::closed_set! {
 }
 
 fn name_part(part: Part) -> String {
-    let force = |kind: ForceKind| match kind {
-        ForceKind::Spring => "spring force",
-        ForceKind::SimpleGravity => "simple gravity",
-        ForceKind::Gravitation => "gravitational force",
-        ForceKind::Constant => "constant force",
-        ForceKind::Drag => "drag force",
-        ForceKind::Vortex => "vortex force",
-    };
     match part {
         Part::Integrator(integrator) => integrator.name().replace("-euler", " Euler"),
-        Part::Force(kind) => force(kind).to_owned(),
-        Part::Jacobians(kind) => format!("derivatives of the {}", force(kind)),
+        Part::Force(kind) => kind.name().to_owned(),
+        Part::Jacobians(kind) => format!("derivatives of the {}", kind.name()),
         Part::Penalty(kind) => format!("{} penalty force", kind.name()),
         Part::SimpleResponse(kind) => format!("{} response", kind.name()),
         _ => part.file().to_owned(),

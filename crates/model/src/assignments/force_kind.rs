@@ -6,16 +6,16 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum ForceKind {
         /// A spring along an edge, with damping.
-        Spring,
+        Spring = "spring force",
         /// A uniform acceleration, the same for every particle.
-        SimpleGravity,
+        SimpleGravity = "simple gravity",
         /// The attraction of two particles by their masses.
-        Gravitation,
+        Gravitation = "gravitational force",
         /// A constant force, the same on every particle.
-        Constant,
+        Constant = "constant force",
         /// Drag against each particle's velocity.
-        Drag,
+        Drag = "drag force",
         /// A pair of particles that turn around each other.
-        Vortex,
+        Vortex = "vortex force",
     }
 }
