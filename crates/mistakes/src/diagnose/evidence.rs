@@ -7,12 +7,14 @@
 use super::{
     Detail, Explanation, Guess, PolynomialDetail, Weight,
     explain::is_formula_area,
-    fault::{ChangeRatio, ChangedParticles, StageFault, WrongVectors},
+    fault::{ChangeRatio, ChangedParticles, Quantity, StageFault, WrongChange, WrongVectors},
     naming::{alternative_statements, explain_by_row},
     polynomial::claim_of_form,
+    student_code::changed_term,
     topic::{ExplanationTopic, PolynomialEvidence},
 };
-use fosssim_student::find;
+use fosssim_model::assignments::Part;
+use fosssim_student::{Mistake, Term, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An explanation of a trace, and the statements that would explain it as well. The flag of a statement is true if it
@@ -59,10 +61,14 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
         let explanation = match same_as.iter().position(|key| find(key).is_some()) {
             _ if is_reported => Explanation { same_as, ..explanation.clone() },
             Some(place) => explain_by_row(explanation, find(&same_as.remove(place))?, same_as),
-            None => {
-                let row = allowed.keys().find_map(|statement| find(statement))?;
-                explain_by_row(explanation, row, same_as)
-            }
+            None => match allowed.keys().find_map(|statement| find(statement)) {
+                Some(row) => explain_by_row(explanation, row, same_as),
+                None => {
+                    let part = explain_by_part(explanation)?;
+                    allowed.insert(part.statement(), true);
+                    part
+                }
+            },
         };
         Some(Symptom { explanation, allowed_statements: allowed })
     };
@@ -70,6 +76,24 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
         .filter(|explanation| explanation.is_about_program() || !explanation.claims.is_empty())
         .filter_map(to_symptom)
         .collect()
+}
+
+/// Returns the explanation that names only the part of the student's code that contains a refuted mistake. The mistake
+/// reproduces the trace, so no other part is wrong in it. Returns `None` if the
+/// mistake does not change velocities.
+fn explain_by_part(refuted: &Explanation) -> Option<Explanation> {
+    let row = find(&refuted.key).filter(|row| matches!(row.mistake, Mistake::Step(_)))?;
+    let part = changed_term(row).row().part;
+    let changes_velocities = matches!(part, Part::Force(_) | Part::Penalty(_) | Part::SimpleResponse(_));
+    // A row about all kinds of pairs has the part of one of them.
+    if !changes_velocities || changed_term(row) == Term::Penalty || !refuted.is_complete() {
+        return None;
+    }
+    let (quantity, particles, ratio) = (Quantity::Velocity, ChangedParticles::Any, ChangeRatio::Other);
+    let wrong = WrongChange { quantity, axis: None, particles, ratio, parts: BTreeSet::from([part]) };
+    let fault = StageFault::Change(wrong);
+    let topic = Explanation::with_topic(fault.key(), ExplanationTopic::Stage(fault));
+    Some(Explanation { samples: refuted.samples, example: refuted.example.clone(), ..topic })
 }
 
 /// The evidence for one statement.

@@ -155,6 +155,23 @@ fn two_rivals_do_not_protect_each_other() {
     assert!(corrected.len() == 1 && corrected[0].topic == together[0].topic, "{corrected:#?}");
 }
 
+/// A right scene can refute all mistakes that reproduce a wrong one. They are in the same force, which is then named.
+#[test]
+fn the_force_of_refuted_mistakes_is_named() {
+    let row = find("gravitation-sign").expect("a row");
+    let scene = scene(CHAIN);
+    let own = explain(&scene, &student::record_trace(&scene, Student::new(Some(row.mistake))).expect("a trace"));
+    let refuted: Vec<String> =
+        own.iter().flat_map(|explanation| explanation.same_as.iter().chain([&explanation.key])).cloned().collect();
+    let together = explain_together([own.as_slice()], &refuted);
+    let [Explanation { topic: ExplanationTopic::Stage(StageFault::Change(wrong)), .. }] = &together[..] else {
+        panic!("{together:#?}")
+    };
+    assert_eq!(wrong.parts, BTreeSet::from([Part::Force(ForceKind::Gravitation)]));
+    let corrected = correct_trace(&own, &together, &refuted).explanations;
+    assert!(corrected.len() == 1 && corrected[0].topic == together[0].topic, "{corrected:#?}");
+}
+
 /// With wrong second derivatives Newton's method does not converge on the second scene. Where such a program ends its
 /// loop is not known, so its trace contradicts nothing.
 #[test]
