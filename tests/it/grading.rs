@@ -386,6 +386,9 @@ fn a_part_of_a_suite_and_the_failed_scenes_are_graded_again() {
     assert!(!wrong.is_empty() && wrong.len() < whole.out().lines().count() - 1, "{}", whole.shown());
     let again = grade(&["--failed", "--format", "csv"]);
     assert_eq!((failing(&again), again.out().lines().count() - 1), (wrong.clone(), wrong.len()), "{}", again.shown());
+    let text = grade(&["--failed"]).out();
+    let before = format!("0 of {} scene", wrong.len());
+    assert!(text.contains(&before) && text.contains("no other scenes ran") && !text.contains("fixing it"), "{text}");
     // The last lines name the scene and a command, and that command works.
     let text = grade(&["--hints", "what"]);
     let command = text.out().lines().find_map(|line| line.trim().strip_prefix("$ fosssim-oracle ").map(str::to_owned));

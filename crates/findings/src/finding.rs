@@ -34,7 +34,7 @@ fosssim_num::closed_set! {
         /// Fair rules: a collision is logged more than once.
         RepeatedCollision = "repeated collision",
         /// Fair rules: a later detection pass of the step used wrong positions.
-        PassPositions = "wrong positions within the step",
+        PassPositions = "polynomial computed from wrong positions",
         /// Fair rules: the two records of a step contradict each other.
         RecordsDiffer = "contradicting records",
         /// Fair rules: the trace contains a log that the course's library can't have written.

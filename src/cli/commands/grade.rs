@@ -327,7 +327,7 @@ impl GradingSession<'_> {
         let trace = |submission: &str, scene: &str| self.trace_place(submission, scene).map(|place| place.path());
         let closer = FurtherCommands { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: Option<&_>| closer.list_commands(grade, scene);
-        render_text(grades, self.skipped_entries(), detail, MAX_HARDEST, Some(&closer))
+        render_text(grades, self.skipped_entries(), detail, MAX_HARDEST, Some(&closer), self.arguments.failed)
     }
 
     /// Grades again whenever a program changes, until the user interrupts it.

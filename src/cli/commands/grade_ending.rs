@@ -64,12 +64,16 @@ pub(super) fn render_text(
     detail: TextDetail,
     max_hardest: usize,
     closer: Option<Advice<'_>>,
+    is_retry: bool,
 ) -> String {
     let (style, width) = (console::style(), console::width());
-    let mut text = Text { style, detail, width, advice: closer }.render(grades);
+    let mut text = Text { style, detail, width, advice: closer, is_retry }.render(grades);
     if grades.len() > 1 && detail > TextDetail::Line {
         text += "\n";
         text += &grade::render_class(grades, max_hardest, style);
+    }
+    if is_retry && grades.len() > 1 {
+        text += "Only scenes that failed in the last grading ran, so these points are no grades.\n";
     }
     text + &grade::list_not_graded(grades, skipped_entries, style)
 }

@@ -79,7 +79,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
         skipped: &skipped,
     };
     let detail = if arguments.quiet { TextDetail::Line } else { TextDetail::Table };
-    results.write(&reports, |grades| render_text(grades, &skipped, detail, usize::MAX, None))?;
+    results.write(&reports, |grades| render_text(grades, &skipped, detail, usize::MAX, None, false))?;
     Ok(exit_code(&grades))
 }
 

@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
         skipped: &skipped,
     };
     results.write(reports, |grades| {
-        render_text(grades, &skipped, text_detail(arguments, grades.len() > 1), MAX_HARDEST, None)
+        render_text(grades, &skipped, text_detail(arguments, grades.len() > 1), MAX_HARDEST, None, false)
     })?;
     Ok(exit_code(&grades))
 }

@@ -9,7 +9,7 @@ use fosssim_findings::{
     Rules,
     explanation::{Explanation, ExplanationTopic, NanStage, NonFiniteValue},
 };
-use fosssim_mistakes::together::{find_likely_mistakes, mistake_points, reconcile_explanations};
+use fosssim_mistakes::together::{find_likely_mistakes, mistake_points, reconcile_explanations, shared_points};
 use std::time::Duration;
 
 fn explanation(key: &str, about: ExplanationTopic, reproduced: u64) -> Explanation {
@@ -139,6 +139,9 @@ fn a_mistake_is_worth_the_points_that_it_alone_costs() {
     let scenes = vec![vec![one("loop-one-fewer")], vec![one("loop-one-fewer"), one("pp-no-two")], vec![part], vec![]];
     let mut grade = grade(scenes);
     assert_eq!([one("loop-one-fewer"), one("pp-no-two")].map(|mistake| mistake_points(&grade, &mistake)), [0.25, 0.0]);
+    // The second scene needs both.
+    assert_eq!(shared_points(&grade, &[one("loop-one-fewer"), one("pp-no-two")]), 0.25);
+    assert_eq!(shared_points(&grade, &[one("loop-one-fewer")]), 0.0);
     grade.groups[0].all_or_nothing = true;
     assert_eq!(mistake_points(&grade, &one("loop-one-fewer")), 0.0, "other scenes stay wrong");
     grade.groups[0].scenes.truncate(1);

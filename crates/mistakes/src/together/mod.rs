@@ -84,14 +84,27 @@ fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
 /// scenes, the simulator with only this mistake makes the same wrong steps as the submission. Points for speed and
 /// extra points are not included.
 pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
+    joint_points(grade, std::slice::from_ref(mistake))
+}
+
+/// Returns the points that are gained by fixing all of these mistakes, but not by fixing single ones.
+pub fn shared_points(grade: &Grade, mistakes: &[Explanation]) -> f64 {
+    let single: f64 = mistakes.iter().map(|mistake| mistake_points(grade, mistake)).sum();
+    (joint_points(grade, mistakes) - single).max(0.0)
+}
+
+/// Returns the points of the scenes that only these mistakes make wrong.
+fn joint_points(grade: &Grade, mistakes: &[Explanation]) -> f64 {
     // The simulator cannot make an unknown mistake.
-    if mistake.is_unexplained() || mistake.names_stage() {
-        return 0.0;
-    }
+    let is_simulated = |mistake: &&Explanation| !mistake.is_unexplained() && !mistake.names_stage();
+    let mistakes: Vec<&Explanation> = mistakes.iter().filter(is_simulated).collect();
+    let is_named = |explanation: &Explanation| {
+        mistakes.iter().any(|mistake| is_named_in(mistake, std::slice::from_ref(explanation)))
+    };
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
         let mut proven = scene.explanations.iter().filter(|explanation| explanation.is_proven()).peekable();
-        proven.peek().is_some() && proven.all(|explanation| is_named_in(mistake, std::slice::from_ref(explanation)))
+        proven.peek().is_some() && proven.all(is_named)
     };
     let group_points = |group: &GroupGrade| {
         let is_right = |scene: &SceneGrade| scene.verdict.is_accepted() || is_mended(scene);

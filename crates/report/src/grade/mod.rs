@@ -40,7 +40,9 @@ pub use phrases::{
     describe_difference, describe_in_scene, describe_likely, describe_missing_points, describe_worth,
     find_likely_mistakes, format_optional_points, format_points, format_score, head_lines, scene_lines, scene_sentence,
 };
-pub(crate) use phrases::{describe_wrong_count, describe_wrong_state, detail_likely, likely_heading};
+pub(crate) use phrases::{
+    describe_shared_worth, describe_wrong_count, describe_wrong_state, detail_likely, likely_heading,
+};
 pub use skipped_entries::{add_warnings, list_not_graded};
 pub(crate) use speed::describe_speed;
 pub use text::{Advice, Text, TextDetail, describe_extra_points, render_table as text_table, shorten_name};

@@ -27,7 +27,9 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located_failure.as_ref().map(words::describe_located);
-    located.into_iter().chain(find_likely_mistakes(grade).into_iter().map(line)).collect()
+    let likely = find_likely_mistakes(grade);
+    let shared = describe_shared_worth(grade, &likely);
+    located.into_iter().chain(likely.into_iter().map(line)).chain(shared).collect()
 }
 
 /// Returns the heading above likely mistakes. If none of them is a known mistake, the heading is `What differs`.
@@ -121,6 +123,15 @@ pub fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     }
     let lost_points = together::mistake_points(grade, mistake);
     (lost_points > 0.0).then(|| format!("worth {}", format_score(lost_points, grade.max_points)))
+}
+
+/// Describes the points that only fixing several mistakes gives; `None` if there are none.
+pub(crate) fn describe_shared_worth(grade: &Grade, likely: &[(Explanation, usize)]) -> Option<String> {
+    grade.points?;
+    let mistakes: Vec<Explanation> = likely.iter().map(|(mistake, _)| mistake.clone()).collect();
+    let points = format_points(together::shared_points(grade, &mistakes));
+    let which = if mistakes.len() == 2 { "both mistakes" } else { "several of these mistakes" };
+    (points != "0").then(|| format!("Fixing {which} is worth another {points} points."))
 }
 
 /// Returns the course's note on a mistake, in a form that follows the report's sentence; empty if there is no note.

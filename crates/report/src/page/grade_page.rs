@@ -10,9 +10,9 @@ use crate::untrusted_text::{remove_escape_codes, to_one_line};
 use crate::{
     grade::{
         change_lines, clearest_scene, describe_difference, describe_extra_points, describe_likely,
-        describe_missing_points, describe_speed, describe_worth, describe_wrong_count, describe_wrong_state,
-        detail_likely, find_likely_mistakes, format_optional_points, format_points, format_score, group_by_cause,
-        is_listed, likely_heading,
+        describe_missing_points, describe_shared_worth, describe_speed, describe_worth, describe_wrong_count,
+        describe_wrong_state, detail_likely, find_likely_mistakes, format_optional_points, format_points, format_score,
+        group_by_cause, is_listed, likely_heading,
     },
     number::format_count,
     words::{self, explanation::capitalize},

@@ -313,7 +313,7 @@ fn hidden_details_are_not_in_the_file() {
             "id=\"what-",
             "\"whatIf\":{",
             "Coefficients",
-            "First difference",
+            "First difference<",
             "differs",
             "expected",
             "data-plot",
@@ -323,7 +323,7 @@ fn hidden_details_are_not_in_the_file() {
         }
         assert!(!html.contains(row.term), "{level}");
         assert_eq!(html.contains(row.summary), level == "what", "{level}");
-        assert_eq!(html.contains("first difference: step"), level != "none", "{level}");
+        assert_eq!(html.contains("First difference: step"), level != "none", "{level}");
         assert_eq!(html.contains("id=\"submission-"), level != "none", "{level}");
         assert_eq!(html.contains("class=\"steps\""), level != "none", "{level}");
     }

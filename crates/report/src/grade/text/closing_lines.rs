@@ -4,15 +4,16 @@ use super::{Text, verdict_style};
 use crate::untrusted_text::{strip_control_characters, to_one_line};
 use crate::{
     grade::{
-        change_lines, describe_likely, describe_speed, describe_worth, describe_wrong_count, detail_likely,
-        find_likely_mistakes, format_optional_points, format_points, group_by_cause, likely_heading,
+        change_lines, describe_likely, describe_shared_worth, describe_speed, describe_worth, describe_wrong_count,
+        detail_likely, find_likely_mistakes, format_optional_points, format_points, group_by_cause, likely_heading,
     },
     number::format_count,
-    style::TextStyle,
+    style::{Style, TextStyle},
     table::{Align, Cell, Table},
     words,
 };
 use fosssim_findings::{Grade, GroupGrade, Verdict};
+use fosssim_mistakes::diagnose::Explanation;
 use std::fmt::Write;
 
 /// The maximum number of groups that are listed. If only one more group exists, it is listed as well. Groups that are
@@ -22,56 +23,47 @@ const MAX_GROUPS: usize = 12;
 /// Renders the closing lines below the verdict. With `alone`, the report lists no scenes above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
-    let mut text = String::new();
-    if alone {
-        text += &options.render_header(grade);
-    }
+    let mut text = if alone { options.render_header(grade) } else { String::new() };
     text += &render_groups(options, grade);
-    for (number, (look, line)) in change_lines(grade).into_iter().enumerate() {
-        if number == 0 {
-            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Since the earlier grading"));
-        }
-        let _ = writeln!(text, "  - {}", style.paint(look, &to_one_line(&line)));
-    }
-    if let Some(located) = &grade.located_failure {
-        let heading = style.paint(TextStyle::Strong, "Where it fails");
-        let _ = writeln!(text, "{heading}\n  - {}", to_one_line(&words::describe_located(located)));
-    }
+    let changes = change_lines(grade).into_iter();
+    let changes = changes.map(|(look, line)| format!("- {}", style.paint(look, &to_one_line(&line))));
+    text += &render_list(style, "Since the earlier grading", changes);
+    let located = grade.located_failure.iter().map(words::describe_located);
+    text += &render_list(style, "Where it fails", located.map(|found| format!("- {}", to_one_line(&found))));
     // A fault of the whole submission explains what is wrong in all groups.
-    let mistakes = if grade.submission_fault().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
-    let wrong = describe_wrong_count(grade);
-    for (number, (mistake, explained)) in mistakes.iter().enumerate() {
-        if number == 0 {
-            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, likely_heading(&mistakes)));
-        }
-        let verb = if mistake.reports_non_finite_value() || mistake.is_unexplained() { "in" } else { "explains" };
-        let what = strip_control_characters(&describe_likely(grade, mistake));
-        let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
-        let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
-        if let Some(note) = grade.course_note(mistake) {
-            let _ = writeln!(text, "    The course: {}", to_one_line(&note.to_string()));
-        }
-        for form in detail_likely(grade, mistake) {
-            let _ = writeln!(text, "    {}", strip_control_characters(&form));
-        }
-    }
     if grade.submission_fault().is_some() {
         return text;
     }
+    let (mistakes, wrong) = (find_likely_mistakes(grade), describe_wrong_count(grade));
+    let describe_mistake = |(mistake, explained): &(Explanation, usize)| {
+        let verb = if mistake.reports_non_finite_value() || mistake.is_unexplained() { "in" } else { "explains" };
+        let what = strip_control_characters(&describe_likely(grade, mistake));
+        let worth = describe_worth(grade, mistake).filter(|_| !options.is_retry);
+        let worth = worth.map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
+        let note = grade.course_note(mistake).map(|note| format!("  The course: {}", to_one_line(&note.to_string())));
+        let forms =
+            detail_likely(grade, mistake).into_iter().map(|form| format!("  {}", strip_control_characters(&form)));
+        let first = format!("- {what} ({verb} {explained} of {wrong}{worth})");
+        std::iter::once(first).chain(note).chain(forms).collect::<Vec<_>>()
+    };
+    let shared = describe_shared_worth(grade, &mistakes).filter(|_| !options.is_retry);
+    let lines = mistakes.iter().flat_map(describe_mistake).chain(shared.map(|shared| format!("- {shared}")));
+    text += &render_list(style, likely_heading(&mistakes), lines);
     let causes = group_by_cause(grade);
     let wrong = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()).copied();
-    if let Some(scene) = wrong {
+    let scene = wrong.map(|scene| {
         let code = style.paint(verdict_style(scene.verdict), scene.verdict.code());
-        let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Scene to look at first"));
-        let _ = writeln!(text, "  {code} {}: {}", to_one_line(&scene.scene), to_one_line(&words::summarize(scene)));
-    }
-    for (number, line) in options.advice.map(|closer| closer(grade, wrong)).unwrap_or_default().iter().enumerate() {
-        if number == 0 && wrong.is_none() {
-            let _ = writeln!(text, "{}", style.paint(TextStyle::Strong, "Next"));
-        }
-        let _ = writeln!(text, "  {line}");
-    }
-    text
+        format!("{code} {}: {}", to_one_line(&scene.scene), to_one_line(&words::summarize(scene)))
+    });
+    let advice = options.advice.map(|closer| closer(grade, wrong)).unwrap_or_default();
+    let heading = if wrong.is_some() { "Scene to look at first" } else { "Next" };
+    text + &render_list(style, heading, scene.into_iter().chain(advice))
+}
+
+/// Renders lines below a heading. Without lines, there is no heading.
+fn render_list(style: Style, heading: &str, lines: impl Iterator<Item = String>) -> String {
+    let lines: String = lines.map(|line| format!("  {line}\n")).collect();
+    if lines.is_empty() { lines } else { style.paint(TextStyle::Strong, heading) + "\n" + &lines }
 }
 
 /// Renders one row per group, with the points and the number of accepted scenes.
@@ -86,6 +78,7 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
         let name = to_one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
         let score = format!("{} of {}{extra}", format_optional_points(group.points), format_points(group.max_points));
+        let score = if options.is_retry { String::new() } else { score };
         table.add_row([
             name.into(),
             score.into(),

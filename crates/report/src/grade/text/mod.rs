@@ -46,6 +46,8 @@ pub struct Text<'a> {
     pub width: Option<usize>,
     /// The function that suggests commands with which the reader sees more of the first wrong scene.
     pub advice: Option<Advice<'a>>,
+    /// Whether only scenes that failed in the last grading were graded. Their points are not a grade.
+    pub is_retry: bool,
 }
 
 impl Text<'_> {
@@ -96,6 +98,7 @@ impl Text<'_> {
         let look = if grade.verdict.is_accepted() { TextStyle::Right } else { TextStyle::Wrong };
         let (name, verdict) = (to_one_line(&grade.submission), grade.verdict.name());
         let reached = match grade.points {
+            _ if self.is_retry => describe_retry(grade),
             Some(reached) => format_score(reached, grade.max_points) + &describe_extra_points(grade),
             None => describe_missing_points(grade).unwrap_or_default(),
         };
@@ -117,26 +120,17 @@ impl Text<'_> {
     /// Renders the lines above the scenes: the suite, the weaknesses of the sandbox, and a failed build.
     fn render_header(&self, grade: &Grade) -> String {
         let mut text = format!("suite {}{}\n", to_one_line(&grade.suite), describe_rules(grade));
-        for warning in &grade.warnings {
-            let _ = writeln!(
-                text,
-                "{}: {}",
-                self.style.paint(TextStyle::Notice, "warning"),
-                strip_control_characters(warning)
-            );
-        }
+        let mark = self.style.paint(TextStyle::Notice, "warning");
+        let warnings = grade.warnings.iter();
+        text.extend(warnings.map(|warning| format!("{mark}: {}\n", strip_control_characters(warning))));
         let build = grade.failed_build();
         if let (Some(unfit), None) = (self.describe_submission_fault(grade), build) {
             let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
             let max_lines = if self.detail < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
-            let _ = writeln!(
-                text,
-                "\n{}\n{}",
-                strip_control_characters(&words::build(&build.end)),
-                quote_output(&build.output, max_lines)
-            );
+            let end = strip_control_characters(&words::build(&build.end));
+            let _ = writeln!(text, "\n{end}\n{}", quote_output(&build.output, max_lines));
         }
         text
     }
@@ -146,6 +140,12 @@ impl Text<'_> {
 pub fn describe_extra_points(grade: &Grade) -> String {
     let score = |(reached, max_points)| format_score(reached, max_points).replace("point", "extra point");
     grade.extra_points().map_or_else(String::new, |points| format!(", {}", score(points)))
+}
+
+/// Describes the result of scenes that failed in the last grading.
+fn describe_retry(grade: &Grade) -> String {
+    let (right, all) = (grade.count_verdict(Verdict::Accepted), grade.scenes().count());
+    format!("{right} of {} that failed before became right; no other scenes ran", format_count(all as u64, "scene"))
 }
 
 /// Names the rule book that gives the verdict. The text is empty if the fair rules were used and both books agree.
