@@ -165,7 +165,8 @@ impl Outcome {
 pub fn format_points(number: impl ToString) -> String {
     let number = number.to_string();
     let Ok(value) = number.parse::<f64>() else { return number };
-    let text = format!("{value:.2}");
+    // Databases round halves away from zero, too.
+    let text = format!("{:.2}", (value * 100.0).round() / 100.0);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 

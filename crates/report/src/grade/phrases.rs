@@ -172,9 +172,9 @@ pub(super) fn list_first(names: &[impl AsRef<str>], max_names: usize) -> String 
     first_names.join(", ") + &more
 }
 
-/// Formats points without trailing zeros, such as `12.5` or `10`.
+/// Formats points without trailing zeros, such as `12.5` or `10`. Halves of a hundredth are rounded up.
 pub fn format_points(value: f64) -> String {
-    let text = format!("{value:.2}");
+    let text = format!("{:.2}", (value * 100.0).round() / 100.0);
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
@@ -214,5 +214,7 @@ mod tests {
             (format_points(10.0), format_points(2.5), format_points(0.0)),
             ("10".into(), "2.5".into(), "0".into())
         );
+        // The server's databases round halves up, too.
+        assert_eq!([51.125, 5.625].map(format_points), ["51.13", "5.63"]);
     }
 }

@@ -118,6 +118,16 @@ pub(super) fn format_grade_points(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
+/// Describes a kind of events in the log.
+pub(super) fn describe_event(kind: &str) -> &str {
+    match kind {
+        "failed try" => "grading failed, tried again",
+        "buried" => "grading failed permanently",
+        "late answer" => "result arrived too late",
+        _ => kind,
+    }
+}
+
 /// Describes the state of a submission, such as `waiting`.
 pub(super) fn describe_state(state: &str) -> &'static str {
     match state {
@@ -136,6 +146,7 @@ mod tests {
         let points = |points: &str, max: &str| super::points(&Some(points.to_owned()), &Some(max.to_owned()));
         assert_eq!(points("68.08974358974359", "100.0"), "68.09 of 100");
         assert_eq!(points("0", "7.5"), "0 of 7.5");
+        assert_eq!(points("51.125", "5.625"), "51.13 of 5.63");
         assert_eq!(super::points(&None, &None), "\u{2013}");
         let difference = |old: &str, new: &str| super::difference(&Some(old.to_owned()), &Some(new.to_owned()));
         assert_eq!(difference("81.25", "77.4"), "\u{2212}3.85");
