@@ -63,11 +63,14 @@ pub struct Regrade {
     pub more: usize,
     /// The number of submissions that get fewer points.
     pub fewer: usize,
-    /// The changes, in the order of submissions, up to the requested number.
+    /// The changes, in the order of their owners' names, up to the requested number.
     pub changes: Vec<Change>,
     /// The cursor of the next page: the ID of the last listed submission; null on the last page.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
+    /// Whether the suite of the regrade hides groups.
+    #[serde(skip)]
+    pub(crate) hides_groups: bool,
 }
 
 impl Regrade {
@@ -106,6 +109,9 @@ pub struct Change {
     pub number: i64,
     /// The login of the owner.
     pub login: String,
+    /// The name of the owner.
+    #[serde(skip)]
+    pub(crate) name: String,
     /// The code of the verdict that counts at present.
     pub old_code: Option<String>,
     /// The points that count at present.
@@ -232,7 +238,9 @@ impl Staff {
         let before = Settings::from_json(&row.text("settings")?)?;
         let mut changes = before.grading_changes(&settings, &read_suites(&mut transaction, self.course).await?);
         // The groups that the new suite hides are not those that were published.
-        let withholds_groups = row.maybe_int("published_at")?.is_some() && !before.has_suite_of(&settings);
+        let withholds_groups = row.maybe_int("published_at")?.is_some()
+            && !before.has_suite_of(&settings)
+            && hides_groups(&mut transaction, id).await?;
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1,
             published_at = CASE WHEN ? = 0 THEN published_at END WHERE id = ?";
         let new = before.with_grading_of(&settings).to_json();
@@ -341,6 +349,13 @@ macro_rules! regraded {
     };
 }
 
+/// Returns whether a result of a regrade has groups that students do not see immediately.
+async fn hides_groups(transaction: &mut Transaction, id: i64) -> Result<bool, DbError> {
+    let statement = "SELECT id FROM result
+        WHERE campaign = ? AND coalesce(shown, 'unknown') <> '' AND code <> ? LIMIT 1";
+    Ok(transaction.row(statement, values![id, JUDGE_ERROR]).await?.is_some())
+}
+
 async fn find(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -360,6 +375,7 @@ async fn find(
     regrade.submissions = count(jobs.int("n")?);
     regrade.left = count(jobs.int("waiting")?);
     regrade.failed = count(failed.int("n")?);
+    regrade.hides_groups = hides_groups(transaction, id).await?;
     if regrade.state == RegradeState::Open {
         let statement = "SELECT count(*) AS n FROM submission WHERE assignment = ? AND removed_at IS NULL
             AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)";
@@ -380,22 +396,25 @@ async fn find(
     regrade.changed = count(counts.int("n")?);
     (regrade.more, regrade.fewer) = (count(counts.int("more")?), count(counts.int("fewer")?));
     let statement = regraded!(
-        changed "job.submission, submission.number, account.login, new.code AS new_code, new.points AS new_points,
-            new.max_points AS new_max_points, new.summary AS new_summary, new.version AS new_version,
-            new.task AS new_task, old.code AS old_code, old.points AS old_points, old.max_points AS old_max_points,
-            old.summary AS old_summary, old.version AS old_version, old.task AS old_task",
+        changed "job.submission, submission.number, account.login, account.name, new.code AS new_code,
+            new.points AS new_points, new.max_points AS new_max_points, new.summary AS new_summary,
+            new.version AS new_version, new.task AS new_task, old.code AS old_code, old.points AS old_points,
+            old.max_points AS old_max_points, old.summary AS old_summary, old.version AS old_version,
+            old.task AS old_task",
         "AND job.submission > ? ORDER BY job.submission LIMIT ?"
     );
     let rows = transaction.rows(statement, values![id, after, MAX_CHANGES]).await?;
     regrade.changes = rows.iter().map(|row| read_change(row, uploaded)).collect::<Result<_, DbError>>()?;
     let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == MAX_CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
+    // The page of the class has the same order.
+    regrade.changes.sort_by_cached_key(|change| (change.name.to_lowercase(), change.number));
     Ok(regrade)
 }
 
 fn read_change(row: &Row, uploaded: &[UploadedSuite]) -> Result<Change, DbError> {
     Ok(read_row!(row => Change {
-        submission, number, login, old_code, old_points, old_max_points, old_summary, new_code, new_points,
+        submission, number, login, name, old_code, old_points, old_max_points, old_summary, new_code, new_points,
         new_max_points, new_summary;
         why: describe_differences(row, uploaded)?,
     }))

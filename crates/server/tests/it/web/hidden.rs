@@ -123,25 +123,32 @@ async fn the_page_for_staff_is_for_staff(fresh: Fresh) {
 async fn a_regrade_by_another_suite_publishes_nothing(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();
-    server.course(&admin, "physics");
-    let ada = server.member(&admin, "physics", "ada", "student");
-    let id = ada.submit("physics", b"#!grade WA 40 Secret/scene 3\n");
-    ada.wait_for_grade("physics", id);
-    let path = "/api/v1/courses/physics/assignments/m1";
-    admin.send("PUT", &format!("{path}/published"), &[], b"").expect(200);
-    for (settings, points) in [(r#"{"rules": "parity"}"#, "20"), (r#"{"suite": "course-2027"}"#, "10.0")] {
-        let wish = format!(r#"{{"reason": "new", "settings": {settings}}}"#);
-        let regrade = admin.post_json(&format!("{path}/regrades"), &wish).expect(201).json()["id"].clone();
-        while admin.get(&format!("{path}/regrades/{regrade}")).expect(200).json()["left"] != 0 {
-            std::thread::sleep(std::time::Duration::from_millis(20));
+    for (course, login, scene, hides) in
+        [("physics", "ada", "Secret/scene", true), ("chemistry", "bob", "Group/scene", false)]
+    {
+        server.course(&admin, course);
+        let student = server.member(&admin, course, login, "student");
+        let id = student.submit(course, format!("#!grade WA 40 {scene} 3\n").as_bytes());
+        student.wait_for_grade(course, id);
+        let path = format!("/api/v1/courses/{course}/assignments/m1");
+        admin.send("PUT", &format!("{path}/published"), &[], b"").expect(200);
+        for (settings, points) in [(r#"{"rules": "parity"}"#, "20"), (r#"{"suite": "course-2027"}"#, "10.0")] {
+            let wish = format!(r#"{{"reason": "new", "settings": {settings}}}"#);
+            let regrade = admin.post_json(&format!("{path}/regrades"), &wish).expect(201).json()["id"].clone();
+            while admin.get(&format!("{path}/regrades/{regrade}")).expect(200).json()["left"] != 0 {
+                std::thread::sleep(std::time::Duration::from_millis(20));
+            }
+            let page = admin.get(&format!("/c/{course}/a/m1/regrades/{regrade}")).expect(200).text();
+            assert_eq!(page.contains("are withheld again"), hides && points == "10.0", "{page}");
+            let changes = page.contains(&format!("<span class=\"names\">{login}</span></th>"));
+            assert_eq!(changes, points == "20", "{page}");
+            admin.post_json(&format!("{path}/regrades/{regrade}/apply"), "").expect(200);
+            let seen = if hides { points } else { "20" };
+            assert_eq!(student.wait_for_grade(course, id)["grade"]["points"], seen);
         }
-        let page = admin.get(&format!("/c/physics/a/m1/regrades/{regrade}")).expect(200).text();
-        assert_eq!(page.contains("are withheld again"), points == "10.0", "{page}");
-        admin.post_json(&format!("{path}/regrades/{regrade}/apply"), "").expect(200);
-        assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], points);
+        let log = admin.get(&format!("/api/v1/courses/{course}/audit?kind=regrade")).expect(200).text();
+        assert_eq!(log.contains("; withheld hidden groups"), hides, "{log}");
     }
-    let log = admin.get("/api/v1/courses/physics/audit?kind=regrade").expect(200).text();
-    assert!(log.contains("; withheld hidden groups"), "{log}");
 }
 
 /// For every reader, before and after hidden groups are published, all offered reports have the points of the page's
