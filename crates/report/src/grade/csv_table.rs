@@ -12,6 +12,7 @@ pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) 
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {
             group.scenes.iter().map(move |scene| {
+                let likeliest = scene.corrected_explanations.first();
                 vec![
                     escape_formula(&grade.submission),
                     escape_formula(&group.name),
@@ -25,11 +26,7 @@ pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) 
                     format!("{:.3}", scene.measured.wall.as_secs_f64()),
                     escape_formula(&words::summarize(scene)),
                     scene.difference_cause.map(|cause| to_key(&cause)).unwrap_or_default(),
-                    scene
-                        .corrected_explanations
-                        .first()
-                        .map(|likeliest| escape_formula(&likeliest.key))
-                        .unwrap_or_default(),
+                    likeliest.map(|likeliest| escape_formula(&likeliest.key)).unwrap_or_default(),
                 ]
             })
         })
@@ -42,11 +39,14 @@ pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) 
 /// Renders a table with one row per submission and one column per group. `rules_differ` counts the scenes that the rule
 /// books judge differently. Points are empty if the grader failed or was stopped. `reason` is a sentence about why a
 /// submission is not accepted everywhere. `same_program` names the other submissions with the same program. `worth` is
-/// the number of points that fixing the first likely mistake would give. Skipped entries have rows with nothing but the
+/// the number of points that fixing the first likely mistake would give. If grades are compared with earlier ones, the
+/// points before and their change follow. Skipped entries have rows with nothing but the
 /// reason.
 pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
                 reason,same_program,worth";
+    let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
+    let head = if is_compared { format!("{head},points_before,points_change") } else { head.to_owned() };
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
     if let Some(first) = grades.first() {
         head.extend(first.groups.iter().map(|group| escape_formula(&group.name)));
@@ -54,7 +54,8 @@ pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) ->
         head.extend(timed.map(|group| escape_formula(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
-        let mistakes = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| describe_likely(grade, &mistake));
+        let likely = find_likely_mistakes(grade);
+        let mistakes = likely.iter().map(|(mistake, _)| describe_likely(grade, mistake));
         let mistakes: Vec<String> = grade.located_failure.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
             escape_formula(&grade.submission),
@@ -70,11 +71,13 @@ pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) ->
                 &describe_missing_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default(),
             ),
             escape_formula(&grade.same_program.join(", ")),
-            find_likely_mistakes(grade)
-                .first()
-                .map(|(first, _)| format_points(mistake_points(grade, first)))
-                .unwrap_or_default(),
+            likely.first().map(|(first, _)| format_points(mistake_points(grade, first))).unwrap_or_default(),
         ];
+        if is_compared {
+            let before = grade.changes().and_then(|changes| changes.earlier_points);
+            let change = grade.points.zip(before).map(|(now, before)| now - before);
+            row.extend([before, change].map(|points| points.map(format_points).unwrap_or_default()));
+        }
         row.extend(grade.groups.iter().map(|group| group.points.map(format_points).unwrap_or_default()));
         row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {
             SpeedSource::Measured(measured) => format!("{:.3}", measured.ratio),
@@ -120,7 +123,18 @@ fn escape_formula(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{super::samples, *};
+
+    #[test]
+    fn a_comparison_has_the_points_before_and_their_change() {
+        let then = samples::accepted_grade();
+        let mut now = samples::accepted_grade();
+        now.points = Some(12.5);
+        assert!(!render_submissions(&[now.clone()], &[]).contains("points_before"));
+        now.earlier_grade = Some((&then).into());
+        let table = render_submissions(&[now], &[]);
+        assert!(table.contains(",worth,points_before,points_change,") && table.contains(",20,-7.5,"), "{table}");
+    }
 
     #[test]
     fn formulas_are_defused() {
