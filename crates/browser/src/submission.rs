@@ -58,11 +58,13 @@ impl UploadedSubmission {
             (None, Some((text, dropped))) => {
                 (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
             }
-            _ => (
-                plan::find_built_in_suite(&name)
-                    .ok_or_else(|| format!("there is no suite {name}{}", plan::suggest(&name)))?,
-                &[][..],
-            ),
+            _ => {
+                let text = plan::find_built_in_suite(&name).ok_or_else(|| {
+                    let names = plan::built_in_names().collect::<Vec<_>>().join(", ");
+                    format!("there is no suite {name} among {names}{}", plan::suggest(&name))
+                })?;
+                (text, &[][..])
+            }
         };
         let mut files = |pattern: &str| find_matching_scenes(pattern, &request.scenes, dropped);
         let plan = plan::load_with(text, &mut files).map_err(|error| {
