@@ -36,7 +36,7 @@ fn a_message_that_the_platform_did_not_sign_is_refused() {
         let valid = |claims: &mut Value| claims["name"] = json!("Ada");
         let attacks: &[(&str, Change, Sign, &str)] = &[
             ("somebody else's key", &valid, &|claims| KEYS[2].sign(claims), "not signed by the platform"),
-            ("a key of no platform", &valid, &|claims| KEYS[1].sign(claims), "no key with the name"),
+            ("a key of no platform", &valid, &|claims| KEYS[1].sign(claims), "no key with the ID"),
             (
                 "no key's name",
                 &valid,
