@@ -79,8 +79,7 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
 }
 
 /// Returns the explanation that names only the part of the student's code that contains a refuted mistake. The mistake
-/// reproduces the trace, so no other part is wrong in it. Returns `None` if the
-/// mistake does not change velocities.
+/// reproduces the trace, so no other part is wrong in it. Returns `None` if the mistake does not change velocities.
 fn explain_by_part(refuted: &Explanation) -> Option<Explanation> {
     let row = find(&refuted.key).filter(|row| matches!(row.mistake, Mistake::Step(_)))?;
     let part = changed_term(row).row().part;
