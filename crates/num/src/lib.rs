@@ -1,6 +1,7 @@
 //! Arithmetic whose bits matter. The crate contains polynomials, the Jenkins-Traub root finder and first satisfaction
 //! times. Certificates make a root search unnecessary, and decisions are valid with any rounding. Further modules
-//! contain the linear solver of the implicit integrators, elementary functions, and numbers as C++ prints them.
+//! contain the linear solver of the implicit integrators, sparse least squares, elementary functions, and numbers as
+//! C++ prints them.
 //!
 //! This crate uses no other crate of the project. It does not print, and uses no files or processes. Functions that run
 //! per pair do not allocate, except for the integers of [`decision::exact`], which is the last resort. The mathematics
@@ -30,5 +31,6 @@ pub mod number_format;
 pub mod number_serde;
 pub mod polynomial;
 pub mod rpoly;
+pub mod sparse;
 pub mod tolerances;
 pub mod vector;

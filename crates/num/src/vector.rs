@@ -29,14 +29,6 @@ pub fn unit(v: Vec2) -> Vec2 {
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
 }
 
-/// Returns the inner product of two lists of the same length, summed from the first element to the last.
-///
-/// It is never compiled as part of another crate: callers without optimization (`profile.dev.package`) need its speed.
-#[inline(never)]
-pub fn dot(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| one * other).sum()
-}
-
 /// Returns a matrix that has one column per particle, without copying. `values` contains the positions or velocities of
 /// a state, with `x` and `y` of each particle in turn.
 pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {

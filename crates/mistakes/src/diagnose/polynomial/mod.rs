@@ -15,7 +15,6 @@ mod dictionary;
 mod example;
 mod radius;
 mod slips;
-mod sparse;
 mod structure;
 mod study;
 mod terms;

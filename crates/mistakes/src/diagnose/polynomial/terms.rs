@@ -3,11 +3,13 @@
 use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
-    sparse::{DesignMatrix, WeightedColumns},
     study::{Candidate, PolynomialSample, PolynomialStudy, median, spread_indices},
 };
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
-use fosssim_num::bounded::BoundedValue;
+use fosssim_num::{
+    bounded::BoundedValue,
+    sparse::{DesignMatrix, WeightedColumns},
+};
 use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 
 /// The maximum number of wrong samples in a fit, which also uses half as many right samples.
@@ -186,25 +188,25 @@ impl<'a> TermFit<'a> {
     /// Returns the changes of the fewest terms that explain the coefficient in all samples, with their costs.
     fn find_term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let rows = self.fit_rows(power);
-        let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
-        let target: Vec<f64> = rows
-            .iter()
-            .map(|&index| {
-                let case = self.case(index);
-                let value = logged_at(case.logged, power).unwrap_or(0.0) / case.scale;
-                scaled(index, value - self.coefficient(index, power).value)
-            })
-            .collect();
+        let bounds: Vec<f64> = rows.iter().map(|&index| self.coefficient(index, power).bound).collect();
+        let scale = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+            rows.iter().zip(&bounds).map(|(&index, bound)| value(index) / bound).collect()
+        };
+        let target = scale(&|index| {
+            let case = self.case(index);
+            let value = logged_at(case.logged, power).unwrap_or(0.0) / case.scale;
+            value - self.coefficient(index, power).value
+        });
         let columns: Vec<Vec<f64>> = (0..self.dictionary.products.len())
-            .map(|product| rows.iter().map(|&index| scaled(index, self.products[index][product].value)).collect())
+            .map(|product| scale(&|index| self.products[index][product].value))
             .collect();
         let order = self.natural_order(power);
-        let prepared = DesignMatrix::new(&columns, |product| {
+        let prepared = DesignMatrix::new(&columns, &|product| {
             let product = &self.dictionary.products[product];
             product.order == order && !product.is_foreign
         });
         let mut found = Vec::new();
-        prepared.find_supports(&target, |support| {
+        prepared.find_supports(&target, &mut |support| {
             let Some(changes) = snap_weights(support) else { return false };
             let is_usual = changes.iter().all(|&change| has_usual_size(self.weights(power, change).1));
             let proves_nothing = changes.len() > 1 && rows.len() <= changes.len();

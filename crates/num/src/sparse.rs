@@ -3,12 +3,13 @@
 //! Small supports (sets of columns) are tried exhaustively with the normal equations of unit columns, larger ones by
 //! orthogonal matching pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar
 //! Conference, 1993). The result is a proposal, which the caller must check against every sample.
+//!
+//! `fosssim-mistakes` uses it. The code is in this crate, and not generic, so that it is optimized in tests too.
 
-use fosssim_num::vector::dot;
 use nalgebra::{DMatrix, DVector};
 
 /// A proposal, which consists of ascending column indices and their weights.
-pub(super) type WeightedColumns = Vec<(usize, f64)>;
+pub type WeightedColumns = Vec<(usize, f64)>;
 
 /// The squared residual that counts as zero, relative to the target. The normal equations are not more accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
@@ -26,7 +27,7 @@ const MAX_FOR_QUADRUPLES: usize = 26;
 const MAX_SUPPORT: usize = 8;
 
 /// The nonzero columns of a least-squares problem, normalized, with their Gram matrix.
-pub(super) struct DesignMatrix {
+pub struct DesignMatrix {
     /// The original indices of the nonzero columns, the likely columns first.
     indices: Vec<usize>,
     unit: Vec<Vec<f64>>,
@@ -37,7 +38,7 @@ pub(super) struct DesignMatrix {
 
 impl DesignMatrix {
     /// Prepares the columns. Likely columns are also tried in larger combinations.
-    pub fn new(columns: &[Vec<f64>], is_likely: impl Fn(usize) -> bool) -> Self {
+    pub fn new(columns: &[Vec<f64>], is_likely: &dyn Fn(usize) -> bool) -> Self {
         let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
         let usable: Vec<usize> = (0..columns.len())
             .filter(|&index| {
@@ -71,7 +72,7 @@ impl DesignMatrix {
     pub fn find_supports(
         &self,
         target: &[f64],
-        mut accept: impl FnMut(&WeightedColumns) -> bool,
+        accept: &mut dyn FnMut(&WeightedColumns) -> bool,
     ) -> Vec<WeightedColumns> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
@@ -103,7 +104,6 @@ impl DesignMatrix {
     /// Returns columns that matching pursuit chooses among the first `among` columns, with their weights. Returns
     /// `None` if they leave a residual, or if they are nearly dependent.
     fn find_by_pursuit(&self, target: &[f64], fits: &[f64], among: usize) -> Option<WeightedColumns> {
-        let square = dot(target, target);
         let mut columns: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();
         while columns.len() < MAX_SUPPORT {
@@ -117,7 +117,7 @@ impl DesignMatrix {
             for (&column, weight) in columns.iter().zip(&weights) {
                 residual.iter_mut().zip(&self.unit[column]).for_each(|(rest, value)| *rest -= weight * value);
             }
-            if dot(&residual, &residual) <= SMALL_RESIDUAL * square {
+            if dot(&residual, &residual) <= SMALL_RESIDUAL * dot(target, target) {
                 return self.solve(&columns, fits);
             }
         }
@@ -176,7 +176,7 @@ impl FitProblem<'_> {
         from: usize,
         among: usize,
         size: usize,
-        found: &mut impl FnMut(&[usize]),
+        found: &mut dyn FnMut(&[usize]),
     ) {
         let count = self.columns.indices.len();
         let depth = partial.columns.len();
@@ -220,6 +220,10 @@ impl FitProblem<'_> {
     }
 }
 
+fn dot(one: &[f64], two: &[f64]) -> f64 {
+    one.iter().zip(two).map(|(one, two)| one * two).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -243,7 +247,7 @@ mod tests {
     #[test]
     fn supports_of_every_size_are_found() {
         let all = columns(40, 100);
-        let prepared = DesignMatrix::new(&all, |index| index < 20);
+        let prepared = DesignMatrix::new(&all, &|index| index < 20);
         for support in [
             vec![(33, -2.0)],
             vec![(2, 1.0), (31, 0.25)],
@@ -251,7 +255,7 @@ mod tests {
             vec![(1, 1.0), (2, 1.0), (3, -1.0), (19, 2.0)],
             vec![(0, 3.0), (7, 1.0), (9, -2.0), (12, 1.5), (18, 2.0), (25, 1.0)],
         ] {
-            let found = prepared.find_supports(&combined(&all, &support), |_| true);
+            let found = prepared.find_supports(&combined(&all, &support), &mut |_| true);
             assert_eq!(found.len(), 1, "{support:?}: {found:?}");
             assert_eq!(found[0].len(), support.len(), "{support:?}: {found:?}");
             for (ours, right) in found[0].iter().zip(&support) {
@@ -265,7 +269,7 @@ mod tests {
     fn indistinguishable_columns_are_all_reported() {
         let mut all = columns(6, 50);
         all[4] = all[1].iter().map(|value| 2.0 * value).collect();
-        let found = DesignMatrix::new(&all, |_| true).find_supports(&all[1], |_| true);
+        let found = DesignMatrix::new(&all, &|_| true).find_supports(&all[1], &mut |_| true);
         assert_eq!(found.len(), 2);
         assert_eq!((found[0][0].0, found[1][0].0), (1, 4));
         assert!((found[1][0].1 - 0.5).abs() < 1e-12);
@@ -274,6 +278,6 @@ mod tests {
     #[test]
     fn nothing_is_proposed_for_noise() {
         let all = columns(30, 100);
-        assert!(DesignMatrix::new(&all[1..], |_| true).find_supports(&all[0], |_| true).is_empty());
+        assert!(DesignMatrix::new(&all[1..], &|_| true).find_supports(&all[0], &mut |_| true).is_empty());
     }
 }
