@@ -1,10 +1,7 @@
 //! Faults in a stage of a step that no known mistake explains. The measured values are in
 //! [`StageDetail`](super::StageDetail).
 use super::area::Area;
-use fosssim_model::{
-    assignments::{ForceKind, Part},
-    sim::PairKind,
-};
+use fosssim_model::{assignments::Part, sim::PairKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 
