@@ -199,7 +199,8 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
     })
 }
 
-/// Records that a platform has received the score. If there is a newer score, nothing is recorded.
+/// Records that a platform has received the score. If there is a newer score, it remains marked as not sent; the log
+/// entry is written in any case.
 pub(super) async fn record_sent(transaction: &mut Transaction, score: &ReadyScore) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
