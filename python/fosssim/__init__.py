@@ -147,7 +147,9 @@ class Scene:
         self.edges = np.array(edges, dtype=np.intp).reshape(-1, 2)
 
     def __repr__(self) -> str:
-        return f"<Scene {self.name}: {len(self.masses)} particles, {len(self.edges)} edges, {self.steps} steps>"
+        counts = {"particle": len(self.masses), "edge": len(self.edges), "step": self.steps}
+        words = ", ".join(f"{count} {noun}{'s' * (count != 1)}" for noun, count in counts.items())
+        return f"<Scene {self.name}: {words}>"
 
 
 SceneLike = Union[Scene, PathLike]
@@ -433,9 +435,13 @@ def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = Fa
     columns = ("group", "scene", "verdict", "points", "max_points", "likely")
     table: dict[str, list[Any]] = {name: [] for name in columns}
     scenes = [(group["name"], scene) for group in suite_answer["groups"] for scene in group["scenes"]]
-    for number, (group, scene) in enumerate(scenes):
+    files = []
+    for _, scene in scenes:
         names = [f"{name}.bin{suffix}" for name in (scene, scene.split("/")[-1]) for suffix in ("", ".zst", ".gz")]
-        file = next((folder / name for name in names if (folder / name).is_file()), None)
+        files.append(next((folder / name for name in names if (folder / name).is_file()), None))
+    if not any(files):
+        raise Error(f"{folder} contains no trace of a scene of the suite: a trace is Group/name.bin in it")
+    for number, ((group, scene), file) in enumerate(zip(scenes, files)):
         trace = b"" if file is None else _read_trace(file)
         result, _ = session.ask("judge", number=number, has_trace=file is not None, file=trace)
         for name, value in (("group", group), ("scene", scene), ("verdict", result["verdict"])):

@@ -101,8 +101,11 @@ def test_a_folder_of_traces_has_a_grade(tmp_path):
         f'schema = 1\nname = "One"\n[[group]]\nname = "A"\nscenes = ["asset:{names[0]}"]\npoints = 4\n'
     )
     assert fosssim.grade(tmp_path, tmp_path / "course.toml").points == 4
-    with pytest.raises(fosssim.Error, match="no suite t9"):
+    with pytest.raises(fosssim.Error, match="no suite t9.* t1m1"):
         fosssim.grade(tmp_path, "t9")
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(fosssim.Error, match="contains no trace of a scene of the suite"):
+        fosssim.grade(tmp_path / "empty")
 
 
 def test_a_cut_trace_holds_what_can_be_read():
