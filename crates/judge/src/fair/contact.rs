@@ -305,7 +305,8 @@ const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may change the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
-    // With an edge at rest, the polynomials are parabolas, and the submission's own are equally exact.
+    // If the edge is at rest, the polynomials are quadratic. The submission computes them without rounding too, so the
+    // decision is certain.
     let is_certain = || {
         let is_exact = motion.has_edge() && motion.is_exact(EXACT_BITS);
         is_exact && decide(&expected.polynomials()[..expected.count()], 0.0).certainty != HitCertainty::Borderline

@@ -20,7 +20,7 @@ pub(super) trait AttributeSource {
         default: Option<f64>,
         negative_effect: Option<&str>,
     ) -> Result<f64, Self::Error>;
-    /// Returns the vector of two numbers.
+    /// Returns the vector whose components the attributes `x` and `y` contain.
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
         let (x, y) = (self.number(x, None, None), self.number(y, None, None));
         Ok(Vec2::new(x?, y?))

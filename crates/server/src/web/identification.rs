@@ -73,7 +73,7 @@ struct CourseAddress {
     course: String,
 }
 
-/// Declares the roles that handlers can take as arguments, and how each is found from the head of a request.
+/// Declares the roles that handlers can take as arguments, and how each is extracted from a request's head.
 macro_rules! roles {
     ($($role:ty: |$parts:ident, $app:ident| $tell:expr;)*) => {
         $(impl FromRequestParts<App> for $role {

@@ -1,6 +1,6 @@
 //! Launches from a learning platform. The service requests the person's identity from the platform (SEC 5.1.1), accepts
-//! one answer, and signs the person in with their account on this server. The page of the course that belongs to the
-//! platform's course opens.
+//! one answer, and signs the person in with their account on this server. Then it opens the page of the course that is
+//! linked to the platform's course.
 use crate::domain::{
     App, NewSecret, Visitor,
     accounts::{
