@@ -154,7 +154,7 @@ fn open_only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, Stri
     const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
     let mut names = opened.list_names().map_err(describe_error_at(folder))?;
-    names.retain(|name| !fosssim_intake::is_system_file(name));
+    names.retain(|name| !fosssim_intake::is_generated_name(name));
     if names.len() > MAX_PLATFORM_ENTRIES || is_alone && names.len() > 1 {
         return Ok(None);
     }

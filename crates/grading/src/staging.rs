@@ -319,7 +319,7 @@ fn copy_folder(
         )));
     }
     for entry in from.list_names().map_err(|error| classify_error(name, error))? {
-        if fosssim_intake::is_system_file(&entry) {
+        if fosssim_intake::is_generated_name(&entry) {
             continue;
         }
         budget.files = budget.files.checked_sub(1).ok_or_else(too_large_error)?;

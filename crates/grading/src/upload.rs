@@ -24,7 +24,7 @@ pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableR
 
 fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     let mut names = folder.list_names().unwrap_or_default();
-    names.retain(|name| !name.as_bytes().starts_with(b".") && !fosssim_intake::is_system_file(name));
+    names.retain(|name| !name.as_bytes().starts_with(b".") && !fosssim_intake::is_generated_name(name));
     names.sort();
     if names.is_empty() {
         return FolderContents::Nothing;

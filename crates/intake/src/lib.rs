@@ -129,7 +129,7 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
 /// Returns whether file managers or build tools create files or folders with this name automatically. These are
 /// attributes and window settings of Finder, picture caches of Explorer, and CMake's cache of a build on another
 /// machine, which would prevent a build here.
-pub fn is_system_file(name: &OsStr) -> bool {
+pub fn is_generated_name(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
     const NAMES: [&[u8]; 6] =
         [b"__MACOSX", b".DS_Store", b"Thumbs.db", b"desktop.ini", b"CMakeCache.txt", b"CMakeFiles"];
@@ -331,7 +331,7 @@ impl ArchiveReader<'_> {
 
     fn record_folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
         let path = self.check_path(name)?;
-        if path.iter().any(is_system_file) {
+        if path.iter().any(is_generated_name) {
             return Ok(());
         }
         self.record_folders_above(&path.join("a file"), name)?;
@@ -343,7 +343,7 @@ impl ArchiveReader<'_> {
 
     fn unpack_file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
         let path = self.check_path(name)?;
-        if path.iter().any(is_system_file) {
+        if path.iter().any(is_generated_name) {
             return self.copy_file(input, &mut io::sink()).map(drop);
         }
         self.record_folders_above(&path, name)?;

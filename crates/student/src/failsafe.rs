@@ -110,7 +110,7 @@ struct RigidBody<'a> {
     /// The displacement of the center of mass within the step.
     shift: Vec2,
     /// The zone's angular momentum about the center, times the step size.
-    momentum: f64,
+    angular_momentum: f64,
     /// The angle by which the body turns within the step, in radians.
     angle: f64,
     /// The zone's moment of inertia.
@@ -120,7 +120,7 @@ struct RigidBody<'a> {
 impl<'a> RigidBody<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
         let (center, shift) = (Vec2::zeros(), Vec2::zeros());
-        let mut rigid = Self { world, q_start, center, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
+        let mut rigid = Self { world, q_start, center, shift, angular_momentum: 0.0, angle: 0.0, inertia: 0.0 };
         rigid.compute_translation(zone, state);
         rigid.compute_rotation(zone, state);
         rigid
@@ -181,7 +181,7 @@ impl<'a> RigidBody<'a> {
 
     /// Computes the angle from the particles' angular momenta about the center of mass.
     fn compute_rotation(&mut self, zone: &Zone, state: &State) {
-        let mut momentum = 0.0;
+        let mut angular_momentum = 0.0;
         let mut inertia = 0.0;
         let student = self.world.student;
         for (number, particle) in zone_particles(self.world, zone).into_iter().enumerate() {
@@ -205,12 +205,15 @@ impl<'a> RigidBody<'a> {
             };
             let term = weight(Mistake::FailsafeAngularUnweighted) * turn;
             match self.mistake() {
-                Some(Mistake::FailsafeAngularOverwritten) => momentum = term,
+                Some(Mistake::FailsafeAngularOverwritten) => angular_momentum = term,
                 Some(Mistake::FailsafeAngularDoubled) => {
-                    momentum = term;
-                    momentum += momentum;
+                    angular_momentum = term;
+                    angular_momentum += angular_momentum;
                 }
-                _ => momentum = student.add_product(momentum, weight(Mistake::FailsafeAngularUnweighted), turn),
+                _ => {
+                    angular_momentum =
+                        student.add_product(angular_momentum, weight(Mistake::FailsafeAngularUnweighted), turn)
+                }
             }
             let square = match self.mistake() {
                 Some(Mistake::FailsafeInertiaDistance) => length(arm),
@@ -223,23 +226,23 @@ impl<'a> RigidBody<'a> {
             };
             inertia = student.add_product(inertia, weight(Mistake::FailsafeInertiaUnweighted), square);
             match self.mistake() {
-                Some(Mistake::FailsafeAngularInteger) => momentum = momentum.trunc(),
+                Some(Mistake::FailsafeAngularInteger) => angular_momentum = angular_momentum.trunc(),
                 Some(Mistake::FailsafeInertiaInteger) => inertia = inertia.trunc(),
                 Some(Mistake::FailsafeSumsSingle) => {
-                    (momentum, inertia) = (round_to_f32(momentum), round_to_f32(inertia))
+                    (angular_momentum, inertia) = (round_to_f32(angular_momentum), round_to_f32(inertia))
                 }
                 _ => {}
             }
         }
-        (self.momentum, self.inertia) = (momentum, inertia);
+        (self.angular_momentum, self.inertia) = (angular_momentum, inertia);
         self.angle = match self.mistake() {
-            Some(Mistake::FailsafeRotationSign) => -(momentum / inertia),
-            Some(Mistake::FailsafeRotationAbsolute) => (momentum / inertia).abs(),
+            Some(Mistake::FailsafeRotationSign) => -(angular_momentum / inertia),
+            Some(Mistake::FailsafeRotationAbsolute) => (angular_momentum / inertia).abs(),
             Some(Mistake::FailsafeNoRotation) => 0.0,
-            Some(Mistake::FailsafeTinyTurnIgnored) if (momentum / inertia).abs() < 1e-3 => 0.0,
-            Some(Mistake::FailsafeAnglePerStep) => momentum / inertia * self.world.scene.time_step,
-            Some(Mistake::FailsafeNoInertia) => momentum,
-            _ => momentum / inertia,
+            Some(Mistake::FailsafeTinyTurnIgnored) if (angular_momentum / inertia).abs() < 1e-3 => 0.0,
+            Some(Mistake::FailsafeAnglePerStep) => angular_momentum / inertia * self.world.scene.time_step,
+            Some(Mistake::FailsafeNoInertia) => angular_momentum,
+            _ => angular_momentum / inertia,
         };
     }
 

@@ -340,7 +340,7 @@ impl GradingSession<'_> {
     ) -> Result<u8> {
         let mut earlier = earlier;
         loop {
-            let last_graded = find_change_stamps(submissions);
+            let graded_stamps = find_change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_canceled() {
                 return Ok(code);
@@ -348,17 +348,18 @@ impl GradingSession<'_> {
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::print_error("waiting for a change; press Ctrl-C to end\n");
             // A file is used only after it has stopped changing, because a linker writes in several steps.
-            let mut last = last_graded.clone();
+            let mut previous_stamps = graded_stamps.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
                 if self.cancellation.is_canceled() {
                     return Ok(exit::INTERRUPTED);
                 }
-                let now = find_change_stamps(submissions);
-                if now == last && now != last_graded && now.iter().all(Option::is_some) {
+                let current_stamps = find_change_stamps(submissions);
+                let have_changed = current_stamps != graded_stamps;
+                if have_changed && current_stamps == previous_stamps && current_stamps.iter().all(Option::is_some) {
                     break;
                 }
-                last = now;
+                previous_stamps = current_stamps;
             }
         }
     }

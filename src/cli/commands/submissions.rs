@@ -142,7 +142,7 @@ impl<'a> Search<'a> {
             let is_named = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let reason = match fs::symlink_metadata(path) {
                 _ if holds_results && RESULT_FOLDERS.iter().any(is_named) => RESULT_FOLDER_REASON.to_owned(),
-                _ if path.file_name().is_some_and(fosssim_intake::is_system_file) => {
+                _ if path.file_name().is_some_and(fosssim_intake::is_generated_name) => {
                     "a file manager or a build tool created it".to_owned()
                 }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {

@@ -86,7 +86,7 @@ pub enum StageFault {
     /// The second detection is right, but the rounds after it are wrong.
     BehindFirstRound,
     /// The geometric part runs in a step that does not need it, or is missing in a step that needs it.
-    Geometric(WrongGeometric),
+    Geometric(GeometricPartError),
     /// A detection pass of the geometric part starts from wrong positions.
     ZonePositions(WrongPositions),
     /// The part of the step after the impulse rounds is wrong.
@@ -263,9 +263,10 @@ fosssim_num::closed_set! {
 
 /// A wrong decision about whether the geometric part runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongGeometric {
+pub enum GeometricPartError {
     /// The geometric part does not run, although the rounds have used up their maximum number.
-    Left {
+    #[serde(rename = "Left")]
+    Omitted {
         /// Whether it never runs; otherwise it fails to run in some steps.
         always: bool,
     },
@@ -428,10 +429,10 @@ impl StageFault {
             Self::HandedOver { or_response: false, .. }
             | Self::LaterRounds
             | Self::RoundsOfPrediction
-            | Self::Geometric(WrongGeometric::Left { always: false } | WrongGeometric::Superfluous) => {
+            | Self::Geometric(GeometricPartError::Omitted { always: false } | GeometricPartError::Superfluous) => {
                 &[Area::ImpulseLoop]
             }
-            Self::Geometric(WrongGeometric::Left { always: true }) => &[Area::ImpulseLoop, Area::ImpactZones],
+            Self::Geometric(GeometricPartError::Omitted { always: true }) => &[Area::ImpulseLoop, Area::ImpactZones],
             Self::ZonePositions(_)
             | Self::ZoneRounds(WrongZoneRounds::Fewer | WrongZoneRounds::More)
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {

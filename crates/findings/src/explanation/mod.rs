@@ -14,8 +14,8 @@ pub use area::Area;
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity, RoundCountError,
-    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongPositions, WrongResponses,
+    ChangeRatio, ChangedParticles, ChangedQuantity, GeometricPartError, LoopEnd, NanStage, NonFiniteValue, Quantity,
+    RoundCountError, StageFault, StepStage, WrongChange, WrongDecisions, WrongMotion, WrongPositions, WrongResponses,
     WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};

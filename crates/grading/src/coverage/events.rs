@@ -215,9 +215,9 @@ pub(super) fn classify_zone_motion(scene: &Scene, particles: &[usize], q_start: 
         divide(sum, total)
     };
     let (center, shift) = (mean(&|particle| vector_at(q_start, particle)), mean(&displacement));
-    let momentum = particles.iter().fold(0.0, |momentum, &particle| {
+    let angular_momentum = particles.iter().fold(0.0, |sum, &particle| {
         let (arm, relative) = (vector_at(q_start, particle) - center, displacement(particle) - shift);
-        momentum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
+        sum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
     });
-    if particles.len() == 1 || momentum == 0.0 { Motion::Shifts } else { Motion::Turns }
+    if particles.len() == 1 || angular_momentum == 0.0 { Motion::Shifts } else { Motion::Turns }
 }

@@ -24,10 +24,10 @@ pub use excluded_mistakes::refuted_keys;
 pub use explain::{explain, explain_kept_trace};
 pub use fosssim_findings::explanation::{
     Amount, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace,
-    ExampleValue, Explanation, ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PairCounts,
-    PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError, StageDetail, StageFault,
-    StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongPairs,
-    WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    ExampleValue, Explanation, ExplanationTopic, GeometricPartError, Guess, ListGuess, LoopEnd, NanStage,
+    NonFiniteValue, PairCounts, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError,
+    StageDetail, StageFault, StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongMotion,
+    WrongPairs, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{fault, guess, topic};
 pub use fosssim_student::{assignments::probe_scenes, formula_detector::find_formula};

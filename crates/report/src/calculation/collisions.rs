@@ -221,7 +221,7 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     let sum =
         |quantity: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * quantity(particle)).sum::<f64>();
     let s = |particle: usize| vector_at(start, particle) - center;
-    let momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
+    let angular_momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
     let inertia = sum(&|particle| s(particle).dot(&s(particle)));
     let rows = members().map(|index| {
         [index.to_string(), format_short(mass(index)), format_vector(s(index)), format_vector(shift(index) - motion)]
@@ -232,8 +232,8 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
         format_vector(center),
         format_vector(motion),
         render_table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
-        format_short(momentum),
+        format_short(angular_momentum),
         format_short(inertia),
-        format_short(momentum / inertia)
+        format_short(angular_momentum / inertia)
     )
 }

@@ -67,8 +67,12 @@ impl PreparedRun {
         self.single_thread.as_ref().map_or_else(sys::fork, sys::fork_single_threaded)
     }
 
-    /// Returns the file rules of an order, if it has file rules.
-    pub(super) fn file_rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
+    /// Builds the file rules of an order, if it has any.
+    pub(super) fn build_file_rules(
+        &self,
+        order: &RunOrder,
+        folder: BorrowedFd<'_>,
+    ) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.layers.landlock => Ok(None),
             Some(places) => file_rules::build_ruleset(order, places, folder).map(Some),

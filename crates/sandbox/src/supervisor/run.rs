@@ -146,7 +146,7 @@ impl Run {
         status.set_nonblocking(true).map_err(failure_at("make a socket"))?;
         let opened = OpenedFile::new(&wire::to_path(&order.program), slot.is_some(), order.limits.memory)?;
         let entry_file = open_entry_file(&order, &opened)?;
-        let rules = prepared.file_rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
+        let rules = prepared.build_file_rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
         let plan = ChildPlan {
             supervisor: std::process::id(),
             folder: folder.try_clone().map_err(failure_at("open the working folder"))?,

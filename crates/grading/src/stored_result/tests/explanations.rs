@@ -2,9 +2,9 @@
 use super::{Role, pair};
 use fosssim_mistakes::diagnose::{
     Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
-    ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence,
-    Quantity, QuantityGuess, Ratios, RoundCountError, StageDetail, StageFault, StepRecord, Substitute, Weight,
-    WrongDecisions, WrongGeometric, WrongMotion, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
+    ExplanationTopic, GeometricPartError, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PolynomialDetail,
+    PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError, StageDetail, StageFault, StepRecord,
+    Substitute, Weight, WrongDecisions, WrongMotion, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
     WrongZones,
 };
 use fosssim_model::sim::PairKind;
@@ -76,8 +76,8 @@ fn faults() -> Vec<StageFault> {
         StageFault::LaterRounds,
         StageFault::RoundsOfPrediction,
         StageFault::BehindFirstRound,
-        StageFault::Geometric(WrongGeometric::Left { always: true }),
-        StageFault::Geometric(WrongGeometric::Superfluous),
+        StageFault::Geometric(GeometricPartError::Omitted { always: true }),
+        StageFault::Geometric(GeometricPartError::Superfluous),
         StageFault::ZonePositions(WrongPositions::First),
         StageFault::AfterRounds,
         StageFault::ZoneRounds(WrongZoneRounds::Later),

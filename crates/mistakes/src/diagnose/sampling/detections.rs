@@ -124,18 +124,22 @@ impl SampleCollector<'_> {
 }
 
 /// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
-/// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pairs` contains the
-/// number of pairs of each kind in one pass.
-fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
+/// polynomials if possible, otherwise as many as possible. Returns `None` if no numbers fit. `pair_counts` is for one
+/// pass.
+fn polynomial_counts(
+    pair_counts: PairKindMap<usize>,
+    count_before: usize,
+    total_count: usize,
+) -> Option<PairKindMap<usize>> {
     let divides_counts = |sizes: &PairKindMap<usize>| {
-        let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
-        pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
+        let pass: usize = pair_counts.iter().map(|(kind, count)| count * sizes[kind]).sum();
+        pass > 0 && count_before.is_multiple_of(pass) && total_count.is_multiple_of(pass) && total_count > 0
     };
     let full = PairKindMap::from_fn(PairKind::polynomial_count);
     if divides_counts(&full) {
         return Some(full);
     }
-    let present_kinds: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
+    let present_kinds: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pair_counts[*kind] > 0).collect();
     // Kinds without pairs log nothing, so their number of polynomials is not varied.
     let mut choices = vec![full];
     for &kind in &present_kinds {

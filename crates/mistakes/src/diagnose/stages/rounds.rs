@@ -3,7 +3,7 @@
 //! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
 use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, new_observation, responses::Responses};
 use crate::diagnose::{
-    LoopEnd, Quantity, RoundCountError, StageDetail, StageFault, WrongGeometric,
+    GeometricPartError, LoopEnd, Quantity, RoundCountError, StageDetail, StageFault,
     sampling::{ROUND_OFF, pair_particles},
 };
 use fosssim_model::{
@@ -27,20 +27,20 @@ pub(super) fn explain_impulse_rounds(scene: &Scene, facts: &[StepFacts], respons
 
 /// Returns the fault in the decision whether the geometric part follows, if the impulse rounds are right.
 pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
-    let (mut left, mut superfluous, mut followed) = (0, 0, 0);
+    let (mut omitted, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_mid_state()) {
         let ran_out = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         match (ran_out, facts.logged_passes()) {
-            (true, Some((_, 0))) => left += 1,
+            (true, Some((_, 0))) => omitted += 1,
             (true, Some(_)) => followed += 1,
             (false, Some((_, passes))) if passes > 0 => superfluous += 1,
             _ => {}
         }
     }
-    let (wrong, count) = match (left, superfluous) {
+    let (wrong, count) = match (omitted, superfluous) {
         (0, 0) => return None,
-        (0, _) => (WrongGeometric::Superfluous, superfluous),
-        _ => (WrongGeometric::Left { always: followed == 0 }, left),
+        (0, _) => (GeometricPartError::Superfluous, superfluous),
+        _ => (GeometricPartError::Omitted { always: followed == 0 }, omitted),
     };
     Some(new_observation(StageFault::Geometric(wrong), Vec::new(), count))
 }

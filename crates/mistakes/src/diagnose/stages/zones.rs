@@ -333,14 +333,14 @@ fn move_group(scene: &Scene, group: &ParticleGroup, stops: bool, start: &State, 
 /// moment of inertia, both for the motion from the start of the step to `state` (collisions.md 5).
 pub(super) fn rotation_angle(scene: &Scene, group: &ParticleGroup, start: &State, state: &State) -> f64 {
     let (center, to) = (center_of_mass(scene, group, start), center_of_mass(scene, group, state));
-    let (mut momentum, mut inertia) = (0.0, 0.0);
+    let (mut angular_momentum, mut inertia) = (0.0, 0.0);
     for &one in &group.particles {
         let arm = vector_at(&start.positions, one) - center;
         let moved = vector_at(&state.positions, one) - vector_at(&start.positions, one) - (to - center);
-        momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
+        angular_momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
         inertia += scene.particles[one].mass * arm.dot(&arm);
     }
-    momentum / inertia
+    angular_momentum / inertia
 }
 
 /// Returns the center of mass of a group.

@@ -30,16 +30,16 @@ pub(super) fn move_zone(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64
     }
     let center = divide(center, mass);
     let shift = divide(shift, mass);
-    let mut momentum = 0.0;
+    let mut angular_momentum = 0.0;
     let mut inertia = 0.0;
     for particle in members() {
         let (m, start) = (bodies.masses[particle], vector_at(q_start, particle));
         let a = (vector_at(q, particle) - start) - shift;
         let s = start - center;
-        momentum += m * (s.x * a.y - s.y * a.x);
+        angular_momentum += m * (s.x * a.y - s.y * a.x);
         inertia += m * s.dot(&s);
     }
-    let angle = momentum / inertia;
+    let angle = angular_momentum / inertia;
     let (c, s) = (cos(angle), sin(angle));
     for particle in members() {
         let start = vector_at(q_start, particle);

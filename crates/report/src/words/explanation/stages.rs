@@ -2,7 +2,7 @@
 use super::capitalize;
 use crate::number::format_g;
 use fosssim_mistakes::diagnose::{
-    Amount, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange, WrongGeometric,
+    Amount, ChangedQuantity, GeometricPartError, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
     WrongResponses,
 };
 use fosssim_model::{assignments::Part, sim::PairKind};
@@ -66,13 +66,13 @@ fn describe_fault(fault: &StageFault) -> String {
         StageFault::BehindFirstRound => {
             "the first round is right, as the polynomials of the second one show, but later rounds are wrong"
         }
-        StageFault::Geometric(WrongGeometric::Left { always: true }) => {
+        StageFault::Geometric(GeometricPartError::Omitted { always: true }) => {
             "after the last allowed round, no geometric pass follows"
         }
-        StageFault::Geometric(WrongGeometric::Left { always: false }) => {
+        StageFault::Geometric(GeometricPartError::Omitted { always: false }) => {
             "after the last allowed round, a geometric pass follows in some steps only"
         }
-        StageFault::Geometric(WrongGeometric::Superfluous) => {
+        StageFault::Geometric(GeometricPartError::Superfluous) => {
             "the geometric part runs although a round has found nothing"
         }
         StageFault::ZonePositions(positions) => positions.name(),

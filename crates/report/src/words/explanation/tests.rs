@@ -1,9 +1,9 @@
 //! Tests all sentences of explanations.
 use super::*;
 use fosssim_mistakes::diagnose::{
-    Amount, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd, NanStage,
-    NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, RoundCountError,
-    StageDetail, StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion,
+    Amount, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, GeometricPartError, Guess, ListGuess,
+    LoopEnd, NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios,
+    RoundCountError, StageDetail, StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongMotion,
     WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::{
@@ -94,9 +94,9 @@ fn faults() -> Vec<StageFault> {
         StageFault::AfterRounds,
         StageFault::RoundsOfPrediction,
         StageFault::BehindFirstRound,
-        StageFault::Geometric(WrongGeometric::Left { always: true }),
-        StageFault::Geometric(WrongGeometric::Left { always: false }),
-        StageFault::Geometric(WrongGeometric::Superfluous),
+        StageFault::Geometric(GeometricPartError::Omitted { always: true }),
+        StageFault::Geometric(GeometricPartError::Omitted { always: false }),
+        StageFault::Geometric(GeometricPartError::Superfluous),
     ];
     for kind in [None, EDGE] {
         faults.extend(WrongDecisions::ALL.map(|wrong| StageFault::Decisions { kind, wrong }));

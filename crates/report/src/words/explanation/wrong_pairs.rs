@@ -12,8 +12,8 @@ struct PairFault<'a> {
     traits: Vec<PairTrait>,
 }
 
-/// Returns the faults. Kinds of pairs with the same fault and the same properties are reported together.
-fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
+/// Groups the faults. Kinds of pairs with the same fault and the same properties are reported together.
+fn group_faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
     for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.counts_by_kind.iter().map(move |pairs| (times, pairs)))
     {
@@ -37,7 +37,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
 
 /// Describes which pairs are affected, what the fault is, and what the pairs have in common.
 pub(super) fn describe(wrong: &WrongPairs) -> String {
-    let faults = faults(wrong);
+    let faults = group_faults(wrong);
     let describe_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|pair_trait| pair_trait.description.as_str()).collect();
@@ -71,7 +71,7 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
     };
-    first.into_iter().chain(faults(wrong).iter().flat_map(list_fault)).collect()
+    first.into_iter().chain(group_faults(wrong).iter().flat_map(list_fault)).collect()
 }
 
 const fn describe_times(times: usize) -> &'static str {

@@ -100,7 +100,7 @@ pub(in crate::domain) enum SignInMethod {
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
     /// Whether the session was started with a link from a course's staff.
-    pub(in crate::domain) started_by_staff: bool,
+    pub(in crate::domain) from_staff_link: bool,
     /// Whether the session was started with a token.
     pub(in crate::domain) started_by_token: bool,
     /// Whether the session is young enough to create further ways to sign in.
@@ -148,7 +148,7 @@ pub(in crate::domain) async fn find_session_account(
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
     let state = SessionState {
-        started_by_staff: row.flag("vouched")?,
+        from_staff_link: row.flag("vouched")?,
         started_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT_AGE,
         is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,

@@ -30,11 +30,14 @@ impl Newcomer<'_> {
         &self,
         transaction: &mut Transaction,
         account: i64,
-        started_by_staff: bool,
+        session_from_staff_link: bool,
     ) -> Result<(), DbError> {
         let statement = "INSERT INTO platform_account (issuer, subject, account, vouched, created_at)
             VALUES (?, ?, ?, ?, {now})";
-        transaction.execute(statement, values![self.issuer, self.subject, account, started_by_staff]).await.map(drop)
+        transaction
+            .execute(statement, values![self.issuer, self.subject, account, session_from_staff_link])
+            .await
+            .map(drop)
     }
 
     /// Finds the person's account, or creates it with the issuer's name. An existing account with the same name or

@@ -113,7 +113,8 @@ async fn connect(
     person: &ProviderPerson,
     connecting: &Person,
 ) -> Result<i64, Problem> {
-    let (account, started_by_staff) = (connecting.account.id, connecting.require_recent_browser()?.started_by_staff);
+    let account = connecting.account.id;
+    let session_from_staff_link = connecting.require_recent_browser()?.from_staff_link;
     let issuer = stored_issuer(provider);
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
     ensure(
@@ -126,7 +127,7 @@ async fn connect(
     let newcomer = describe_newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
-    newcomer.link_account(transaction, account, started_by_staff).await?;
+    newcomer.link_account(transaction, account, session_from_staff_link).await?;
     log(transaction, provider, account, &connecting.account.login).await?;
     Ok(account)
 }

@@ -89,7 +89,7 @@ impl Person {
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
         let way =
-            if self.require_recent_browser()?.started_by_staff { SignInMethod::ByStaff } else { SignInMethod::Own };
+            if self.require_recent_browser()?.from_staff_link { SignInMethod::ByStaff } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n, count(CASE WHEN name = ? THEN 1 END) AS with_name FROM token
             WHERE account = ? AND revoked_at IS NULL";
