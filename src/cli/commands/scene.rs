@@ -31,7 +31,7 @@ fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     }
     let mut scenes = Vec::new();
     for name in names {
-        let xml = library::find_scene(name).context("a scene that was just listed")?;
+        let xml = library::find_scene(name).with_context(|| format!("cannot find the listed scene {name}"))?;
         let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not valid"))?;
         scenes.push((name, loaded.scene));
     }
@@ -56,7 +56,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     let names = matching_names(&arguments.patterns)?;
     let (mut written, mut unchanged, mut conflicts) = (0_u64, 0_u64, Vec::new());
     for name in names {
-        let xml = library::find_scene(name).context("a scene that was just listed")?;
+        let xml = library::find_scene(name).with_context(|| format!("cannot find the listed scene {name}"))?;
         let place = FilePlace::new(&arguments.output, format!("{name}.xml"));
         match has_contents(&place, xml) {
             Some(true) => unchanged += 1,

@@ -93,7 +93,7 @@ fn complete_names(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<Com
 
 pub(super) fn print_completions(arguments: &CompletionsArguments) -> Result<()> {
     let (shells, mut script) = (Shells::builtins(), Vec::new());
-    let shell = shells.completer(&arguments.shell.to_string()).context("no script for this shell")?;
+    let shell = shells.completer(&arguments.shell.to_string()).context("there is no script for this shell")?;
     shell.write_registration(COMPLETION_VARIABLE, PROGRAM_NAME, PROGRAM_NAME, PROGRAM_NAME, &mut script)?;
     let mut script = String::from_utf8(script)?;
     if arguments.shell == Shell::Bash {
