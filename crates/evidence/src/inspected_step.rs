@@ -234,12 +234,12 @@ impl<'a> Inspector<'a> {
         for (call, &(number, _)) in self.step.calls.iter_mut().zip(&self.polynomial_places) {
             call.logged = fates[number].clone();
         }
-        let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
-        self.step.surplus_polynomials = Some(surplus);
+        let mut surplus_count = is_claimed.iter().filter(|claimed| !**claimed).count();
+        self.step.surplus_polynomials = Some(surplus_count);
         // A polynomial without a call may belong to a call that was made twice. It then follows or precedes the
         // polynomials of its pass.
         let mut index = 0;
-        while index < log.len() && surplus > 0 {
+        while index < log.len() && surplus_count > 0 {
             if is_claimed[index] {
                 index += 1;
                 continue;
@@ -262,9 +262,9 @@ impl<'a> Inspector<'a> {
                         keep_pair(&mut pass.repeated_pairs, call.pair);
                     }
                     index += call.count;
-                    surplus -= call.count;
+                    surplus_count -= call.count;
                 }
-                None => (index, surplus) = (index + 1, surplus - 1),
+                None => (index, surplus_count) = (index + 1, surplus_count - 1),
             }
         }
     }

@@ -23,13 +23,14 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
     let is_match = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
     let shorter = rows.min(columns);
-    let head = (0..shorter).take_while(|&index| is_match(index, index)).count();
-    let tail = (0..shorter - head).take_while(|&back| is_match(rows - 1 - back, columns - 1 - back)).count();
-    let mut found: Vec<Option<usize>> = (0..rows).map(|index| (index < head).then_some(index)).collect();
-    for back in 0..tail {
+    let head_count = (0..shorter).take_while(|&index| is_match(index, index)).count();
+    let tail_count =
+        (0..shorter - head_count).take_while(|&back| is_match(rows - 1 - back, columns - 1 - back)).count();
+    let mut found: Vec<Option<usize>> = (0..rows).map(|index| (index < head_count).then_some(index)).collect();
+    for back in 0..tail_count {
         found[rows - 1 - back] = Some(columns - 1 - back);
     }
-    let (tall, wide) = (rows - head - tail, columns - head - tail);
+    let (tall, wide) = (rows - head_count - tail_count, columns - head_count - tail_count);
     if tall.checked_mul(wide)? > MAX_COMPARISONS {
         return None;
     }
@@ -39,7 +40,7 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
         let mut corner = above[0];
         above[0] += GAP_COST;
         for column in 0..wide {
-            let match_cost = corner + if is_match(head + row, head + column) { 0 } else { MISMATCH_COST };
+            let match_cost = corner + if is_match(head_count + row, head_count + column) { 0 } else { MISMATCH_COST };
             let (delete_cost, insert_cost) = (above[column + 1] + GAP_COST, above[column] + GAP_COST);
             corner = above[column + 1];
             (above[column + 1], cells[row * wide + column]) =
@@ -53,7 +54,7 @@ pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog
         match cells[(row - 1) * wide + column - 1] {
             MATCH => {
                 (row, column) = (row - 1, column - 1);
-                found[head + row] = Some(head + column);
+                found[head_count + row] = Some(head_count + column);
             }
             DELETE => row -= 1,
             _ => column -= 1,

@@ -78,8 +78,8 @@ pub fn locate_failure(all_scenes: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     failed.iter().for_each(|tried| shared.retain(|feature| tried.features.contains(feature)));
     let mut with: BTreeMap<usize, Vec<FeatureIndex>> = BTreeMap::new();
     for feature in shared {
-        let scenes = all_scenes.iter().filter(|tried| tried.features.contains(&feature)).count();
-        with.entry(scenes).or_default().push(feature);
+        let scene_count = all_scenes.iter().filter(|tried| tried.features.contains(&feature)).count();
+        with.entry(scene_count).or_default().push(feature);
     }
     // Because every failing scene contains the value, Ochiai's measure is the square root of `failed / with`. A value
     // is better if fewer scenes contain it.

@@ -301,15 +301,20 @@ struct SubmissionProgress {
 impl<'a> SubmissionGrading<'a> {
     /// Creates the grading of a submission that has no results yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
-        let missing = grader.plan.scenes().count();
-        let (done, reported) = (vec![None; missing], vec![None; missing]);
+        let scene_count = grader.plan.scenes().count();
+        let (done, reported) = (vec![None; scene_count], vec![None; scene_count]);
         Self {
             grader,
             shared,
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            progress: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported, missing }),
+            progress: Mutex::new(SubmissionProgress {
+                finished: done,
+                skip_start: None,
+                reported,
+                missing: scene_count,
+            }),
         }
     }
 

@@ -32,13 +32,13 @@ impl Plan {
     pub fn filter_scenes(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let scene_count = self.scenes().count();
         for group in &mut self.groups {
-            let before = group.scenes.len();
+            let count_before = group.scenes.len();
             group.scenes.retain(|task| takes(&task.name));
             #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-            if group.scenes.len() < before {
+            if group.scenes.len() < count_before {
                 // Speed gives points only if all scenes of the group are accepted, so it gives none here.
                 group.marking.speed = None;
-                group.marking.points *= group.scenes.len() as f64 / before as f64;
+                group.marking.points *= group.scenes.len() as f64 / count_before as f64;
             }
         }
         self.groups.retain(|group| !group.scenes.is_empty());

@@ -217,12 +217,12 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
             is_choice
         }
         (ValueKind::TextList, DeValue::Array(list)) => {
-            let before = problems.len();
+            let count_before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
                 let actual_type = with_article(item.get_ref().type_str());
                 problems.push((item.span(), format!("each of {name} must be a text in quotes, not {actual_type}")));
             }
-            problems.len() == before
+            problems.len() == count_before
         }
         (ValueKind::Table(keys), DeValue::Table(table)) => {
             remove_unknown(table, keys, &format!("[{name}]"), at, problems);

@@ -149,9 +149,9 @@ struct ArchiveReader<'a> {
 }
 
 fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
-    let packed = file.metadata().map_err(ArchiveError::Read)?.len();
+    let packed_size = file.metadata().map_err(ArchiveError::Read)?.len();
     let mut walk = ArchiveReader {
-        limits: limits.for_size(packed),
+        limits: limits.for_size(packed_size),
         folder,
         entries: 0,
         bytes: 0,
@@ -224,11 +224,11 @@ impl ArchiveReader<'_> {
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
-        let packed = file.metadata().map_err(ArchiveError::Read)?.len();
+        let packed_size = file.metadata().map_err(ArchiveError::Read)?.len();
         let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
         // Entries of an archive may overlap, and may compress to almost nothing, so their sizes prove nothing.
-        meter.set(packed.saturating_mul(2).saturating_add(READ_OVERHEAD_BYTES * archive.len() as u64));
+        meter.set(packed_size.saturating_mul(2).saturating_add(READ_OVERHEAD_BYTES * archive.len() as u64));
         // If several entries have the same name, the library keeps only one, which may be the wrong one.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Duplicate("a name".to_owned()));

@@ -93,8 +93,8 @@ fn wrap(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
         }
         rest = &rest[length..];
         // No line starts with a space.
-        let spaces = rest.iter().take_while(|&&byte| byte == b' ').count();
-        rest = &rest[spaces..];
+        let space_count = rest.iter().take_while(|&&byte| byte == b' ').count();
+        rest = &rest[space_count..];
     }
     lines
 }

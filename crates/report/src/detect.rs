@@ -287,15 +287,15 @@ fn polynomial_lines(name: &str, curve: &StudiedPolynomial, number: FormatFn, sty
         text += &format!("    {}\n", style.paint(TextStyle::Faint, &line));
     }
     let real = curve.real_zeros();
-    let complex = curve.zeros.len() - real.len();
+    let complex_count = curve.zeros.len() - real.len();
     let mut zeros = real.iter().map(|&zero| format_rounded_or(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
         zeros = "none real".to_owned();
     }
-    if complex > 0 {
-        zeros += &format!(" ({complex} complex)");
+    if complex_count > 0 {
+        zeros += &format!(" ({complex_count} complex)");
     }
     text += &format!("    zeros: {zeros}\n    positive: {}\n", format_intervals(&curve.positive_intervals, number));
     text

@@ -48,11 +48,11 @@ impl Diagnosis {
             _ => {}
         }
         let mut text = String::new();
-        let wrong = self.cases.iter().filter(|case| !case.accepted).count();
-        let verb = if wrong == 1 { "is" } else { "are" };
+        let wrong_count = self.cases.iter().filter(|case| !case.accepted).count();
+        let verb = if wrong_count == 1 { "is" } else { "are" };
         let traces = format_count(self.cases.len() as u64, "trace");
-        let _ = writeln!(text, "{wrong} of {traces} {verb} wrong by the fair rules.\n");
-        if wrong == 0 {
+        let _ = writeln!(text, "{wrong_count} of {traces} {verb} wrong by the fair rules.\n");
+        if wrong_count == 0 {
             text += "These scenes show single formulas. A suite has more: fosssim-oracle grade PROGRAM\n\n";
         }
         if let Some(found) = &self.located {
@@ -61,15 +61,15 @@ impl Diagnosis {
         }
         let mut likely = 0;
         for common in &self.common {
-            let explained = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
+            let explained_count = self.cases.iter().filter(|case| is_named_in(common, &case.explanations)).count();
             likely += usize::from(!common.reports_non_finite_value());
-            let traces = format_count(wrong as u64, "wrong trace");
-            let share = format!("({explained} of {traces})");
+            let traces = format_count(wrong_count as u64, "wrong trace");
+            let share = format!("({explained_count} of {traces})");
             let heading = match likely {
                 _ if common.reports_non_finite_value() => format!("First value that is not finite {share}"),
                 _ if common.is_unexplained() => format!("Most frequent fault {share}"),
-                1 if explained < wrong => format!("Most frequent likely cause {share}"),
-                1 if wrong == 1 => "Likely cause of the only wrong trace".to_owned(),
+                1 if explained_count < wrong_count => format!("Most frequent likely cause {share}"),
+                1 if wrong_count == 1 => "Likely cause of the only wrong trace".to_owned(),
                 1 => format!("Likely cause of all {traces}"),
                 _ => format!("Another likely cause {share}"),
             };
@@ -89,8 +89,8 @@ impl Diagnosis {
             if self.cases[..index].iter().any(|earlier| is_alike(&earlier)) {
                 continue;
             }
-            let more = self.cases[index + 1..].iter().filter(is_alike).count();
-            let _ = writeln!(text, "{}", render_head(case, more, style));
+            let more_count = self.cases[index + 1..].iter().filter(is_alike).count();
+            let _ = writeln!(text, "{}", render_head(case, more_count, style));
             for other in case.explanations.iter().map(std::slice::from_ref) {
                 if !common.iter().any(|common| is_named_in(common, other)) {
                     text += &render_mistakes(other, style);

@@ -101,16 +101,16 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
 /// sentence, so they are only counted.
 fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
-    let (shown, more) = named.split_at(named.len().min(MAX_LISTED));
-    let more = more.len() + keys.len() - named.len();
-    match (shown.is_empty(), more) {
+    let (shown, left_out) = named.split_at(named.len().min(MAX_LISTED));
+    let more_count = left_out.len() + keys.len() - named.len();
+    match (shown.is_empty(), more_count) {
         (true, 0) => None,
-        (true, more) => {
-            Some(format!("Cannot be distinguished here from {}", format_count(more as u64, "other formula")))
+        (true, _) => {
+            Some(format!("Cannot be distinguished here from {}", format_count(more_count as u64, "other formula")))
         }
         (false, 0) => Some(format!("Cannot be distinguished here from: {}.", list_sentences(shown))),
-        (false, more) => {
-            Some(format!("Cannot be distinguished here from: {}; and {more} more.", list_sentences(shown)))
+        (false, _) => {
+            Some(format!("Cannot be distinguished here from: {}; and {more_count} more.", list_sentences(shown)))
         }
     }
 }

@@ -64,11 +64,11 @@ pub fn format_count(value: u64, noun: &str) -> String {
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = format_alike(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
-    let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
+    let common_count = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
     // If the parts before the decimal point have different lengths, digits can't be compared.
     let integer_length = |text: &str| text.find('.').unwrap_or(text.len());
-    let difference_start = if integer_length(&texts.0) == integer_length(&texts.1) { common } else { 0 };
+    let difference_start = if integer_length(&texts.0) == integer_length(&texts.1) { common_count } else { 0 };
     (texts.0, texts.1, parts.then_some(difference_start))
 }
 

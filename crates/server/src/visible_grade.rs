@@ -149,14 +149,14 @@ fn visible_grade(report: &GradeFile) -> Option<VisibleGrade> {
         let numbers: Option<Vec<f64>> = visible.iter().filter(|group| !group.extra).map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
-    let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
+    let accepted_count = scenes.iter().filter(|scene| scene.code == "AC").count();
     Some(VisibleGrade {
         verdict: worst.verdict.clone(),
         // The code "--" means that no group was run; shown codes consist of letters.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
-        summary: format!("{accepted} of {} scenes accepted; the other groups are not shown yet", scenes.len()),
+        summary: format!("{accepted_count} of {} scenes accepted; the other groups are not shown yet", scenes.len()),
     })
 }
 

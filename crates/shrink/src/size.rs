@@ -113,12 +113,12 @@ pub(crate) fn measure_size(scene: &Scene, assignment: Assignment) -> Size {
         Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
         Collision::Hybrid { .. } => 2,
     };
-    let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
+    let fixed_count = scene.particles.iter().filter(|particle| particle.fixed).count();
     let (events, end) = simulate(scene).unwrap_or_default();
     let hits = events.hits.values().sum::<u64>() as usize;
     let extra_digits: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
-    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort_index + handling + fixed);
+    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort_index + handling + fixed_count);
     let (unclear, oddities) = (usize::from(!is_clear(scene)), count_oddities(scene, assignment));
     ([unclear, oddities, steps, bodies, objects, scene.forces.len(), features, hits, written + extra_digits], magnitude)
 }

@@ -55,7 +55,7 @@ pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
 
 fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
-        let before = zones.len();
+        let count_before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
         // A student who requires two shared particles still finds that a zone of one particle is part of another zone.
         let meet = |one: &Zone, other: &Zone| {
@@ -73,7 +73,7 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
             }
         }
         zones = merged;
-        let again = zones.len() != before;
+        let again = zones.len() != count_before;
         if !again || student.makes(Mistake::ZonesMergedOnce) {
             return zones;
         }

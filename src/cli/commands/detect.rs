@@ -107,13 +107,13 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let records = traced.as_ref().map(|traced| (&traced.mid, &traced.end.polynomials));
     let InspectedPair { step: inspected, end, error: failed } =
         evidence::inspect(&scene.scene, step, &before, records, pair);
-    let passes = inspected.calls.len();
+    let pass_count = inspected.calls.len();
     let call = inspected.calls.get(arguments.pass as usize - 1);
     match (call, failed) {
         (None, Some(error)) => bail!(describe_step_error(&error)),
-        (None, None) if passes > 0 => {
-            let plural = if passes == 1 { "pass" } else { "passes" };
-            bail!("step {step} has {passes} detection {plural}; there is no pass {}", arguments.pass)
+        (None, None) if pass_count > 0 => {
+            let plural = if pass_count == 1 { "pass" } else { "passes" };
+            bail!("step {step} has {pass_count} detection {plural}; there is no pass {}", arguments.pass)
         }
         _ => {}
     }
@@ -125,7 +125,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
     let logged = call.map_or(&CallLog::Unknown, |call| &call.logged);
     let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
-    let place = CallPlace { scene, trace, step, pair, pass, passes, logged };
+    let place = CallPlace { scene, trace, step, pair, pass, passes: pass_count, logged };
     show(arguments, &study, Some(place), &inputs)
 }
 

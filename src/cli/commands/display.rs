@@ -31,8 +31,8 @@ impl<'a> LiveDisplay<'a> {
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
         let bars = console::wants_bars().then(|| {
             let all = console::show_bars();
-            let runs = submissions.len() * plan.scenes().count();
-            let overall = console::add_bar(&all, runs as u64, "{wide_bar} {pos} of {len} runs, {eta} left");
+            let run_count = submissions.len() * plan.scenes().count();
+            let overall = console::add_bar(&all, run_count as u64, "{wide_bar} {pos} of {len} runs, {eta} left");
             Bars { all, overall, running: BTreeMap::new() }
         });
         Self { plan, submissions, bars, graded: 0 }

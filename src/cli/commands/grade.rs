@@ -194,12 +194,12 @@ impl GradingSession<'_> {
     /// Prints how many results were reused, and how a grading that was stopped can be continued.
     fn report_kept_results(&self, grades: &[Grade]) {
         let reused_count: usize = grades.iter().map(Grade::count_reused).sum();
-        let all = grades.iter().flat_map(Grade::scenes).count();
+        let scene_count = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
             if reused_count > 0 {
-                let (folder, all) = (folder.display(), format_count(all as u64, "result"));
+                let (folder, results) = (folder.display(), format_count(scene_count as u64, "result"));
                 console::print_error(format!(
-                    "reused {reused_count} of {all} from {folder} (--fresh regrades everything)\n"
+                    "reused {reused_count} of {results} from {folder} (--fresh regrades everything)\n"
                 ));
             }
             if self.cancellation.is_canceled() {

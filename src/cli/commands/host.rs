@@ -169,12 +169,12 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         };
         let _ = writeln!(text, "{state:<11} {:<28} {}{note}", promise.attack, promise.promise);
     }
-    let broken = table.broken_promises().count();
+    let broken_count = table.broken_promises().count();
     let kept_promises = format_count(table.count_kept() as u64, "promise");
-    let untested = table.promises.len() - table.count_kept() - broken;
-    let _ = writeln!(text, "\n{kept_promises} kept, {broken} broken, {untested} not tested here");
+    let untested = table.promises.len() - table.count_kept() - broken_count;
+    let _ = writeln!(text, "\n{kept_promises} kept, {broken_count} broken, {untested} not tested here");
     console::report(&text)?;
-    Ok(if broken == 0 && table.count_kept() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if broken_count == 0 && table.count_kept() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Returns the sandbox. If required layers are missing, the error names them.

@@ -92,13 +92,13 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, ShardResult)>> {
             listing.flatten().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
         candidates.sort();
         candidates.insert(0, folder.clone());
-        let before = parts.len();
+        let count_before = parts.len();
         for folder in candidates {
             if let Some(part) = ShardResult::read(&folder)? {
                 parts.push((folder, part));
             }
         }
-        if parts.len() == before {
+        if parts.len() == count_before {
             bail!("{} has no complete shard: grade --shard writes shard.json at its end", folder.display());
         }
     }

@@ -174,10 +174,10 @@ impl ProgramUnderTest {
             ends.push((outcome.ended, steps));
         }
         drop(bar);
-        let left_out = tasks.len() - cases.len();
+        let left_out_count = tasks.len() - cases.len();
         tasks.truncate(cases.len());
-        if left_out > 0 {
-            let others = format_count(left_out as u64, "other scene");
+        if left_out_count > 0 {
+            let others = format_count(left_out_count as u64, "other scene");
             console::print_remark(format!(
                 "the program exceeded its limits on {stopped} scenes, so it was not run on {others}; look for a loop \
                  that does not end\n"

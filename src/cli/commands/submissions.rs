@@ -137,7 +137,7 @@ impl<'a> Search<'a> {
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, skipped: &mut Vec<SkippedEntry>) -> Result<()> {
         let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
-        let before = found.len();
+        let count_before = found.len();
         for path in &paths {
             let is_named = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let reason = match fs::symlink_metadata(path) {
@@ -168,7 +168,7 @@ impl<'a> Search<'a> {
             };
             skip_entry(skipped, path, &reason);
         }
-        if found.len() == before {
+        if found.len() == count_before {
             bail!(
                 "{} contains no submission: no program, no archive ({}), no folder, and no {}; build sources first, \
                  or take the folder itself as a submission with --single",

@@ -105,17 +105,17 @@ pub fn grade_all(
 /// grade. This thread receives all events.
 fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
-    let tasks = gradings.len() * scenes.len();
+    let task_count = gradings.len() * scenes.len();
     let next = AtomicUsize::new(0);
     let (sender, receiver) = mpsc::channel();
     let mut grades: Vec<Option<Grade>> = gradings.iter().map(|_| None).collect();
     std::thread::scope(|scope| {
-        for _ in 0..grader.options.jobs.clamp(1, tasks.max(1)) {
+        for _ in 0..grader.options.jobs.clamp(1, task_count.max(1)) {
             let (sender, next, scenes) = (sender.clone(), &next, &scenes);
             scope.spawn(move || {
                 loop {
                     let task = next.fetch_add(1, Ordering::Relaxed);
-                    if task >= tasks {
+                    if task >= task_count {
                         return;
                     }
                     let (submission, scene) = (task / scenes.len(), task % scenes.len());

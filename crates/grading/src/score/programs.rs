@@ -149,8 +149,8 @@ fn find_failing_features<'a>(grade: &Grade, features: impl FnOnce() -> &'a [Feat
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::Skipped(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
-    let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
-    if failed == 0 || failed == run().count() {
+    let failed_count = run().filter(|scene| failing(&scene.ended).is_some()).count();
+    if failed_count == 0 || failed_count == run().count() {
         return None;
     }
     let scenes: Vec<TriedScene<'_>> = grade

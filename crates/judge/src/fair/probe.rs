@@ -242,8 +242,8 @@ mod tests {
             std::array::from_fn::<_, 100, _>(|_| signs.next() > 0.0)
         };
         for seed in 1..=PERTURBED_RUNS {
-            let ups = of(seed).iter().filter(|is_up| **is_up).count();
-            assert!((30..=70).contains(&ups), "{ups} of 100 with seed {seed}");
+            let up_count = of(seed).iter().filter(|is_up| **is_up).count();
+            assert!((30..=70).contains(&up_count), "{up_count} of 100 with seed {seed}");
             assert!((1..seed).all(|other| of(other) != of(seed)), "{seed}");
         }
     }

@@ -120,14 +120,14 @@ impl NearPairs {
             Some((all_pairs, _)) => PenaltyTerms::for_scene(all_pairs)?,
             None => PenaltyTerms::for_scene(scene)?,
         };
-        let particles = scene.particles.len();
-        let mut rest: Vec<Vec2> = (0..particles)
+        let particle_count = scene.particles.len();
+        let mut rest: Vec<Vec2> = (0..particle_count)
             .map(|index| vector_at(&logged.velocities, index) - vector_at(&own.velocities, index))
             .collect();
         let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
-        let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
+        let wrong: Vec<bool> = (0..particle_count).map(|particle| !is_settled(&rest, particle)).collect();
         let mut near_pairs: Vec<NearPair> = Vec::new();
-        let mut sums = vec![Vec2::zeros(); particles];
+        let mut sums = vec![Vec2::zeros(); particle_count];
         terms.visit_pairs(&before.positions, |pair, forces| {
             let mut candidate = NearPair { pair, changes: [(0, Vec2::zeros()); 3], count: 0, excess: None };
             for &(particle, force) in forces.iter().filter(|(particle, _)| !scene.particles[*particle].fixed) {
@@ -153,7 +153,7 @@ impl NearPairs {
         if candidates.len() > MAX_PAIRS {
             return None;
         }
-        let mut particle_candidates: Vec<Vec<usize>> = vec![Vec::new(); particles];
+        let mut particle_candidates: Vec<Vec<usize>> = vec![Vec::new(); particle_count];
         for (index, candidate) in candidates.iter().enumerate() {
             candidate.changes().iter().for_each(|(particle, _)| particle_candidates[*particle].push(index));
         }

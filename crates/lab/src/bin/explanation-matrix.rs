@@ -121,10 +121,10 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
             None => confused.push(format!("    {}: nothing", row.id)),
         }
     }
-    let all = wrong.len();
+    let total_count = wrong.len();
     println!(
-        "\nexplained by all scenes together: {} of {all} are named as the likeliest; the others:",
-        all - confused.len()
+        "\nexplained by all scenes together: {} of {total_count} are named as the likeliest; the others:",
+        total_count - confused.len()
     );
     confused.iter().for_each(|line| println!("{line}"));
 }

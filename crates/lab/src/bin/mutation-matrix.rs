@@ -76,9 +76,9 @@ fn main() -> anyhow::Result<ExitCode> {
         .map(|(row, _)| row.id)
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
-    let uncaught = list_mistakes(&rows, &matrix, FAIR_BOOK, false).len();
+    let uncaught_count = list_mistakes(&rows, &matrix, FAIR_BOOK, false).len();
     let accuses = !find_rejected(FAIR_BOOK, &rows, &cases, &matrix).is_empty();
-    Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
+    Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught_count > 0 || accuses)))
 }
 
 /// Returns the mistakes that at least one scene catches under a rule book, or those that none catches.

@@ -87,8 +87,8 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
         };
         !names_mistake(list) && list.iter().any(is_wrong) && !list.iter().any(is_other)
     };
-    let explained = wrong.iter().filter(|(_, list)| names_mistake(list)).count();
-    let needed = explained.div_ceil(NAMED_PER_CONTRADICTION);
+    let explained_count = wrong.iter().filter(|(_, list)| names_mistake(list)).count();
+    let needed = explained_count.div_ceil(NAMED_PER_CONTRADICTION);
     let work = Cell::new(0);
     let is_visible = |scene: &Scene, key: &str| find_effect(scene, key, &work) == MistakeEffect::Visible;
     // Two mistakes in the same force or integrator, whose keys begin with the same word, are rivals: a program makes
@@ -97,7 +97,7 @@ fn is_contradicted(key: &str, others: &[&str], wrong: &[(&Scene, &[Explanation])
     let is_alone =
         |scene: &Scene| !others.iter().any(|other| !is_rival(other) && *other != key && is_visible(scene, other));
     let against = wrong.iter().filter(|(scene, list)| is_open(list) && is_visible(scene, key) && is_alone(scene));
-    explained > 0 && against.take(needed).count() == needed
+    explained_count > 0 && against.take(needed).count() == needed
 }
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the

@@ -111,8 +111,8 @@ fn drop_disputed(lists: [&mut Vec<Explanation>; 2], traces: &[&[Explanation]]) {
     empty.retain(|explanation| !has_rival(explanation));
     if found.len() + empty.len() < all.len() {
         let stages = || traces.iter().copied().flatten().filter(|explanation| explanation.names_stage());
-        let agreeing = |explanation: &Explanation| stages().filter(|other| other.key == explanation.key).count();
-        found.extend(stages().max_by_key(|explanation| agreeing(explanation)).cloned());
+        let count_agreeing = |explanation: &Explanation| stages().filter(|other| other.key == explanation.key).count();
+        found.extend(stages().max_by_key(|explanation| count_agreeing(explanation)).cloned());
     }
 }
 
@@ -176,9 +176,9 @@ fn explain_wrong_polynomials(
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
     }
     let max_count = wrong.values().copied().max()?;
-    let named_in = |explanation: &Explanation| traces.iter().filter(|list| is_named_in(explanation, list)).count();
+    let count_traces = |explanation: &Explanation| traces.iter().filter(|list| is_named_in(explanation, list)).count();
     let is_reported = found.iter().any(|explanation| !explanation.subjects().is_empty())
-        || found.first().is_some_and(|first| named_in(first) >= max_count);
+        || found.first().is_some_and(|first| count_traces(first) >= max_count);
     // A fault in only a few traces may follow from another mistake.
     if is_reported || max_count * 2 <= traces.len() {
         return None;
@@ -198,7 +198,7 @@ fn explain_wrong_polynomials(
     };
     let heads = guesses
         .map(|guess| Explanation::for_wrong_polynomials(subjects.clone(), PolynomialEvidence::Guess(guess.clone())));
-    let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
+    let likeliest = heads.map(|head| (count_traces(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
         // A known formula is tried on every trace, so only few traces may contradict it.
         Some((named, head)) if max_count.saturating_sub(named) * if is_known(&head) { 8 } else { 2 } < max_count => {
@@ -290,8 +290,8 @@ fn keep_earliest_stage(traces: &mut Vec<OpenTrace>) {
         traces.iter().filter(is_concerned).count()
     };
     let late = CATALOG.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
-    let explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
-    let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
+    let count_explained = |row: &Row| traces.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
+    let weak: Vec<&str> = late.filter(|row| count_explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a fault in the stage replaces explanations that only name the stage.
     let has_details = all().any(|explanation| is_in_earliest(explanation) && !explanation.is_vague());
     // If pairs are in another order or left out, the polynomials of one pair are compared with those of another.

@@ -139,16 +139,16 @@ fn find_stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
             .or_else(|| Some((state_stage, find_non_finite_value(&mid.state).or(state)?))),
         Collision::Hybrid { .. } => {
             let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomial_count()).sum();
-            let middle = mid.polynomials.len();
+            let mid_count = mid.polynomials.len();
             let kind = |index: usize| locate_pair(scene, index % pass.max(1)).map(|(_, pair)| pair.kind);
             match polynomial {
-                Some((index, value)) if index < middle.min(pass) => Some((NanStage::Detection(kind(index)), value)),
-                Some((index, value)) if index < middle => Some((NanStage::ImpulseRounds, value)),
+                Some((index, value)) if index < mid_count.min(pass) => Some((NanStage::Detection(kind(index)), value)),
+                Some((index, value)) if index < mid_count => Some((NanStage::ImpulseRounds, value)),
                 _ if find_non_finite_value(&mid.state).is_some() => {
                     Some((NanStage::ImpulseRounds, find_non_finite_value(&mid.state)?))
                 }
-                Some((index, value)) if index < middle + pass => {
-                    Some((NanStage::Detection(kind(index - middle)), value))
+                Some((index, value)) if index < mid_count + pass => {
+                    Some((NanStage::Detection(kind(index - mid_count)), value))
                 }
                 other => Some((NanStage::Zones, other.map(|(_, value)| value).or(state)?)),
             }

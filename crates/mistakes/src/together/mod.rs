@@ -121,8 +121,8 @@ fn joint_points(grade: &Grade, mistakes: &[Explanation]) -> f64 {
 /// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Several scenes nearly
 /// always distinguish mistakes that look the same in one scene.
 pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
-    let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
-    if explained > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
+    let explained_count = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
+    if explained_count > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
 /// Returns whether all scenes that a mistake explains give only extra points.

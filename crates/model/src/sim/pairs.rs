@@ -141,9 +141,9 @@ impl Pairs {
         let per_pass = self.polynomial_count();
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));
         for particle in 0..self.particles {
-            let edges = self.edges.iter().filter(|&&ends| !is_end(ends, particle)).count();
+            let edge_count = self.edges.iter().filter(|&&ends| !is_end(ends, particle)).count();
             let particle_polynomials = PairKind::ParticleParticle.polynomial_count() * (self.particles - particle - 1)
-                + PairKind::ParticleEdge.polynomial_count() * edges
+                + PairKind::ParticleEdge.polynomial_count() * edge_count
                 + PairKind::ParticleHalfPlane.polynomial_count() * self.half_planes;
             if let Some(more) = rest.checked_sub(particle_polynomials) {
                 rest = more;

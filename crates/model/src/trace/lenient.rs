@@ -41,10 +41,10 @@ const MAX_KEPT_COEFFICIENTS: usize = 4096;
 /// Returns the memory that the lists of one record of the scene's traces may take, in bytes. It is the memory of the
 /// polynomials of all possible detection passes of a step (collisions.md 4 and 5), within bounds.
 pub fn record_memory(scene: &Scene) -> usize {
-    let particles = scene.particles.len();
-    let particle_polynomials = particles.saturating_mul(particles.saturating_sub(1));
-    let edge_polynomials = particles.saturating_mul(4 * scene.edges.len());
-    let half_plane_polynomials = particles.saturating_mul(2 * scene.half_planes.len());
+    let particle_count = scene.particles.len();
+    let particle_polynomials = particle_count.saturating_mul(particle_count.saturating_sub(1));
+    let edge_polynomials = particle_count.saturating_mul(4 * scene.edges.len());
+    let half_plane_polynomials = particle_count.saturating_mul(2 * scene.half_planes.len());
     let pass = particle_polynomials.saturating_add(edge_polynomials).saturating_add(half_plane_polynomials);
     pass.saturating_mul(max_passes(scene))
         .saturating_mul(MAX_POLYNOMIAL_BYTES)

@@ -200,8 +200,8 @@ mod tests {
             (0..polynomials).for_each(|_| recorder.log.polynomials.push(&[1.0, 2.0, 3.0]));
             recorder.observe_synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
-            let kept = recorder.log.polynomials.all_bytes().len();
-            assert!(kept < 400_000, "{kept} bytes are kept in step {step}");
+            let kept_size = recorder.log.polynomials.all_bytes().len();
+            assert!(kept_size < 400_000, "{kept_size} bytes are kept in step {step}");
         }
     }
 

@@ -76,13 +76,13 @@ impl PassPlot<'_> {
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
-        let differing = (0..compared).filter(|&index| self.has_difference(index)).count();
+        let differing_count = (0..compared).filter(|&index| self.has_difference(index)).count();
         let first = (0..compared).find(|&index| self.has_difference(index));
         let first = first.map_or_else(String::new, |index| {
             let actual = self.actual[index].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
             format!("; the first is step {} with {actual}, expected {}", index + 1, self.expected[index])
         });
-        format!("{differing} of {compared} steps have a different number of detection passes{first}")
+        format!("{differing_count} of {compared} steps have a different number of detection passes{first}")
     }
 }
 

@@ -67,14 +67,14 @@ pub(super) fn describe_reduced_cards<'a>(
     let moving_details: Vec<CardDetail> = moving_cards.map(|(_, detail)| *detail).collect();
     let without =
         moving_details.iter().filter(|detail| matches!(detail, CardDetail::Text | CardDetail::Pictures)).count();
-    let rounded = moving_details.iter().filter(|detail| **detail == CardDetail::Rounded).count();
+    let rounded_count = moving_details.iter().filter(|detail| **detail == CardDetail::Rounded).count();
     let scenes = |count: usize| if count == 1 { "one scene has".to_owned() } else { format!("{count} scenes have") };
     let mut parts = Vec::new();
     if without > 0 {
         parts.push(format!("{} no motion on this page", scenes(without)));
     }
-    if rounded > 0 {
-        parts.push(format!("{} a rounded motion on this page", scenes(rounded)));
+    if rounded_count > 0 {
+        parts.push(format!("{} a rounded motion on this page", scenes(rounded_count)));
     }
     if parts.is_empty() {
         return String::new();

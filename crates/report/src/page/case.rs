@@ -168,7 +168,7 @@ impl TraceContent<'_> {
     fn plots(&self, evidence: &Evidence) -> String {
         let (key, first) = (self.key, self.case.first().map(|first| first.step));
         let tolerance = state_bound(evidence, self.check.rules.official());
-        let steps = evidence.steps.len();
+        let step_count = evidence.steps.len();
         let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
         let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
         let series =
@@ -186,7 +186,7 @@ impl TraceContent<'_> {
         let figure = |svg: &str| {
             format!(
                 "<figure tabindex=\"0\" data-plot=\"{key}\" data-left=\"{left}\" data-right=\"{right}\" \
-                data-steps=\"{steps}\">{svg}</figure>\n"
+                data-steps=\"{step_count}\">{svg}</figure>\n"
             )
         };
         let mut out = String::new();

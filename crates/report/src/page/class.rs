@@ -261,13 +261,13 @@ fn scene_letter(scene: &SceneGrade) -> char {
 fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_optional_points);
-    let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
+    let unsolved_count = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     vec![
         (format!("{} of {}", figures.run_submissions, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", format_points(figures.max_points))),
         (median, "median, of submissions that were run".to_owned()),
-        (unsolved.to_string(), "scenes without a correct answer".to_owned()),
+        (unsolved_count.to_string(), "scenes without a correct answer".to_owned()),
     ]
 }
 

@@ -33,16 +33,16 @@ impl ExplainedPage<'_> {
     /// Renders the page as one HTML file.
     pub fn html(&self) -> String {
         let cases = &self.diagnosis.cases;
-        let wrong = cases.iter().filter(|case| !case.accepted).count();
-        let title_class = if wrong == 0 && !cases.is_empty() { "good" } else { "bad" };
-        let title = match (&cases[..], wrong) {
+        let wrong_count = cases.iter().filter(|case| !case.accepted).count();
+        let title_class = if wrong_count == 0 && !cases.is_empty() { "good" } else { "bad" };
+        let title = match (&cases[..], wrong_count) {
             ([], _) => "The smallest scenes on which the program is wrong".to_owned(),
             ([case], 0) => format!("{}: nothing to explain", case.scene),
             ([case], _) => format!("{}: what is wrong", case.scene),
             (_, 1) => format!("1 of {} traces is wrong", cases.len()),
-            (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
+            (_, wrong_count) => format!("{wrong_count} of {} traces are wrong", cases.len()),
         };
-        let content = ExplainedContent { page: self, title: &title, title_class, wrong };
+        let content = ExplainedContent { page: self, title: &title, title_class, wrong: wrong_count };
         render_document(&title, &render_template(&content), script())
     }
 }
@@ -73,8 +73,9 @@ impl ExplainedContent<'_> {
     /// empty, because its card names them.
     fn shared_mistakes(&self) -> impl Iterator<Item = (&Explanation, usize)> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
-        let explained = |explanation| cases.iter().filter(|case| is_named_in(explanation, &case.explanations)).count();
-        common.iter().filter(|_| cases.len() > 1).map(move |explanation| (explanation, explained(explanation)))
+        let count_explained =
+            |explanation| cases.iter().filter(|case| is_named_in(explanation, &case.explanations)).count();
+        common.iter().filter(|_| cases.len() > 1).map(move |explanation| (explanation, count_explained(explanation)))
     }
 
     /// Renders an article for each smallest scene.

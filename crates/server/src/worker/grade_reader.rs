@@ -25,8 +25,8 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
         return Err("the grade is a judge error".to_owned());
     }
     let scenes = grade.scenes();
-    let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
-    let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
+    let accepted_count = scenes.iter().filter(|scene| scene.code == "AC").count();
+    let mut summary = format!("{accepted_count} of {} scenes accepted", scenes.len());
     let likely = || grade.likely_mistakes.first().map(|mistake| &mistake.text);
     // No mistake is reported for a program that crashed or was stopped. The summary of the first scene with the grade's
     // verdict then describes how the program ended.

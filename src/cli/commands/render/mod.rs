@@ -133,12 +133,12 @@ fn select_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
     // The first picture of the original shows the state after the first step.
     let first = if is_film(form) { 0 } else { every };
     let picks = StepRange { first, every, last };
-    let pictures = picks.count();
-    if pictures > MAX_PICTURES {
+    let count = picks.count();
+    if count > MAX_PICTURES {
         let min_interval = last.div_ceil(MAX_PICTURES - 1);
-        bail!("this would draw {pictures} pictures, more than the limit of {MAX_PICTURES}; add --every {min_interval}");
+        bail!("this would draw {count} pictures, more than the limit of {MAX_PICTURES}; add --every {min_interval}");
     }
-    if pictures == 0 {
+    if count == 0 {
         let steps = format_count(last.into(), "step");
         bail!("no step is drawn: the scene has {steps}, and --every {every} is requested");
     }

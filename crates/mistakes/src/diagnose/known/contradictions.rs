@@ -34,10 +34,10 @@ pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> 
 
 /// Returns the kinds of pairs with a right polynomial before the first wrong one of the step.
 fn find_right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
-    let logged = sample.records.end.polynomials.len();
+    let logged_count = sample.records.end.polynomials.len();
     let right = match sample.difference {
-        Some(StepDifference::Polynomial(index)) => index.min(logged),
-        _ => logged,
+        Some(StepDifference::Polynomial(index)) => index.min(logged_count),
+        _ => logged_count,
     };
     let (mut next, mut kinds) = (0, Vec::new());
     for pair in pairs(scene).iter() {

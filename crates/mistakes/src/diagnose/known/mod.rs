@@ -132,9 +132,9 @@ fn adopt_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     let world = World::new(scene.clone(), ApproachForm::RightApproach.with_mistake(None));
     let samples = std::mem::take(&mut scan.wrong_steps).into_iter().chain(std::mem::take(&mut scan.right_steps));
     for mut sample in samples {
-        let logged = sample.records.end.polynomials.len();
+        let logged_count = sample.records.end.polynomials.len();
         // A few more polynomials than were logged already show that some are missing; further ones are not needed.
-        let guard = |index: usize, _: &[f64]| index < 2 * logged + MAX_SURPLUS_POLYNOMIALS;
+        let guard = |index: usize, _: &[f64]| index < 2 * logged_count + MAX_SURPLUS_POLYNOMIALS;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
         sample.difference = find_first_difference(&expected, &sample.records, &ROUND_OFF);

@@ -31,8 +31,8 @@ pub(super) struct PlacedPair<'a> {
 
 impl<'a> StepGeometry<'a> {
     pub fn new(scene: &'a Scene, before: &'a State) -> Self {
-        let bodies = scene.particles.len() + scene.edges.len();
-        let boxes: Vec<BoundingBox> = (0..bodies).map(|body| body_box(scene, &before.positions, body)).collect();
+        let body_count = scene.particles.len() + scene.edges.len();
+        let boxes: Vec<BoundingBox> = (0..body_count).map(|body| body_box(scene, &before.positions, body)).collect();
         Self {
             scene,
             before,

@@ -28,7 +28,7 @@ pub(super) struct Dictionary {
 impl Dictionary {
     /// Creates the dictionary of a polynomial's formula.
     pub fn new(subject: Subject, formula: &'static Formula) -> Self {
-        let own = formula.letters.len();
+        let own_count = formula.letters.len();
         let is_new = |extra: &&'static Letter| {
             let bare = extra.name.trim_matches(['(', ')']);
             formula.letters.iter().all(|letter| letter.name != bare && letter.meaning != bare)
@@ -40,17 +40,17 @@ impl Dictionary {
         match longest {
             1 => lists.extend((0..letters.len()).map(|letter| vec![letter])),
             2 => {
-                lists.extend(two_letter_products(own));
-                lists.extend((0..own).map(|letter| vec![letter]));
-                lists.extend(foreign_products(subject, own));
+                lists.extend(two_letter_products(own_count));
+                lists.extend((0..own_count).map(|letter| vec![letter]));
+                lists.extend(foreign_products(subject, own_count));
             }
-            _ => lists.extend(three_letter_products(own)),
+            _ => lists.extend(three_letter_products(own_count)),
         }
         let products = lists
             .into_iter()
             .map(|list| Product {
                 order: list.iter().map(|&index| letters[index].order).sum(),
-                is_foreign: list.iter().any(|&index| index >= own),
+                is_foreign: list.iter().any(|&index| index >= own_count),
                 letters: list,
             })
             .collect();

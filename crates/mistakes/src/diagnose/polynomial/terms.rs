@@ -83,7 +83,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
-    let reproduced = (0..study.cases.len()).filter(|&index| is_reproduced(index)).count();
+    let reproduced_count = (0..study.cases.len()).filter(|&index| is_reproduced(index)).count();
     Some(Candidate {
         guess: Guess::Coefficients {
             powers: guesses.iter().map(|guess| guess.power).collect(),
@@ -92,7 +92,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
         details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
         forms: fitting.forms(&guesses),
         cost: guesses.iter().map(|guess| guess.edits[0].1).sum::<f64>() + 0.1 * reading.number as f64,
-        reproduced,
+        reproduced: reproduced_count,
     })
 }
 

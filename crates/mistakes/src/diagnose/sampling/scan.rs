@@ -195,18 +195,18 @@ impl Scanner {
             || (are_single_precision(&theirs.velocities) && !are_single_precision(&ours.velocities));
         StepContext {
             keeps_polynomials: self.is_right_without(before, actual, |records, previous| {
-                let kept = previous.polynomials.len();
+                let kept_count = previous.polynomials.len();
                 let theirs = &mut records.polynomials;
-                let has_prefix = theirs.len() >= kept
+                let has_prefix = theirs.len() >= kept_count
                     && previous
                         .polynomials
                         .iter()
                         .zip(theirs.iter())
                         .all(|(a, b)| polynomial_matches(a, b, &ROUND_OFF));
-                if has_prefix && kept > 0 {
-                    let start = theirs.coefficient_ends[kept - 1];
+                if has_prefix && kept_count > 0 {
+                    let start = theirs.coefficient_ends[kept_count - 1];
                     theirs.coefficients.drain(..start);
-                    theirs.coefficient_ends.drain(..kept);
+                    theirs.coefficient_ends.drain(..kept_count);
                     theirs.coefficient_ends.iter_mut().for_each(|end| *end -= start);
                 }
                 has_prefix

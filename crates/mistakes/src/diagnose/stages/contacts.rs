@@ -17,9 +17,9 @@ use std::ops::Range;
 /// be logged. Returns `None` unless most steps with wrong polynomials show this.
 pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
-    let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
-    (permuted > 0 && 2 * permuted > wrong.len())
-        .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted))
+    let permuted_count = wrong.iter().filter(|facts| is_permuted(facts)).count();
+    (permuted_count > 0 && 2 * permuted_count > wrong.len())
+        .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted_count))
 }
 
 /// Returns the explanation that some pairs are not tested. Returns `None` unless the log of at least one step consists
@@ -33,16 +33,16 @@ pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> 
 
 /// Returns the kinds of the pairs of the first pass that the log lacks, if it consists of the other pairs' polynomials.
 fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
-    let logged = facts.actual.end.polynomials.len();
+    let logged_count = facts.actual.end.polynomials.len();
     let (mut at, mut skipped) = (0, Vec::new());
     for (kind, block) in pair_blocks(facts, facts.count_certain_polynomials()) {
-        if is_logged_at(facts, &block, at, logged) {
+        if is_logged_at(facts, &block, at, logged_count) {
             at += block.len();
         } else {
             skipped.push((kind, 0.0));
         }
     }
-    (at > 0 && at == logged && !skipped.is_empty()).then_some(skipped)
+    (at > 0 && at == logged_count && !skipped.is_empty()).then_some(skipped)
 }
 
 /// Returns the kind of each pair whose polynomials are among the first `size` expected ones, and the range of their
@@ -69,7 +69,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
     }
     let blocks = pair_blocks(facts, size).enumerate();
     let mut unmatched: Vec<(usize, Range<usize>)> = blocks.map(|(number, (_, block))| (number, block)).collect();
-    let pairs = unmatched.len();
+    let pair_count = unmatched.len();
     let (mut at, mut found, mut moved, mut misplaced, mut last) = (0, 0, 0, 0, 0);
     while at < size {
         let is_here = |(_, block): &(usize, Range<usize>)| is_logged_at(facts, block, at, size);
@@ -87,8 +87,9 @@ fn is_permuted(facts: &StepFacts) -> bool {
         last = number;
         at += block.len();
     }
-    let is_spoilt = facts.is_continuous() && !facts.hits.is_empty() && 3 * found >= 2 * pairs && 3 * moved >= found;
-    misplaced > 0 && (found == pairs || is_spoilt)
+    let is_spoilt =
+        facts.is_continuous() && !facts.hits.is_empty() && 3 * found >= 2 * pair_count && 3 * moved >= found;
+    misplaced > 0 && (found == pair_count || is_spoilt)
 }
 
 /// The maximum relative error of a contact vector that counts as inaccurate, and not as wrong.

@@ -91,8 +91,8 @@ impl Responses {
         };
         let whose = || wrong.keys().copied().collect();
         let what = if wrong.values().flatten().all(|change| !change.changes_across && change.ratio == Some(0.0)) {
-            let all = wrong.len() == changes.keys().filter(|changed| kinds.contains(&changed.kind)).count();
-            if all { WrongResponses::Nothing } else { WrongResponses::Unchanged(whose()) }
+            let are_all_wrong = wrong.len() == changes.keys().filter(|changed| kinds.contains(&changed.kind)).count();
+            if are_all_wrong { WrongResponses::Nothing } else { WrongResponses::Unchanged(whose()) }
         } else if wrong.values().flatten().any(|change| change.changes_across) {
             WrongResponses::Across(whose())
         } else {
@@ -117,8 +117,8 @@ impl Responses {
 /// Returns the contacts of a step whose bodies have no other contact, with the expected and the actual state after
 /// them.
 fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
-    let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
-    let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
+    let round_count = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
+    let hits = || facts.hits.iter().filter(move |hit| hit.pass < round_count);
     let is_alone = |hit: &&Hit| {
         let own = pair_particles(scene, hit.pair);
         let touches = |other: &Hit| {
@@ -133,7 +133,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
         Some(Stage::Impulses { .. }) => {
             let Some((expected, actual)) = facts.mid_states() else { return Vec::new() };
             // If a loop has used all its rounds, its result is checked separately.
-            let ran_out = rounds < facts.passes.len();
+            let ran_out = round_count < facts.passes.len();
             if ran_out || expected.polynomials.len() != actual.polynomials.len() {
                 return Vec::new();
             }

@@ -58,12 +58,13 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
             seen_counts.push(counts);
         }
     }
-    let sort = |ordering: Ordering| seen_counts.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
+    let count_steps =
+        |ordering: Ordering| seen_counts.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
     // At least half of the wrong steps must have this fault. The faults of the other steps may follow from it.
     if seen_counts.is_empty() || 2 * seen_counts.len() < wrong.len() {
         return None;
     }
-    let number = match (sort(Ordering::Less), sort(Ordering::Greater)) {
+    let number = match (count_steps(Ordering::Less), count_steps(Ordering::Greater)) {
         (_, 0) => RoundCountError::Fewer,
         (0, _) => RoundCountError::More,
         _ => RoundCountError::Other,

@@ -150,7 +150,8 @@ mod tests {
             unasked.step(&mut ()).expect("a step");
             assert_eq!(asked.state(), unasked.state());
         }
-        let turned = start.iter().zip(&asked.state().velocities).filter(|(before, after)| before != after).count();
-        assert!(turned > 50, "{turned}");
+        let turned_count =
+            start.iter().zip(&asked.state().velocities).filter(|(before, after)| before != after).count();
+        assert!(turned_count > 50, "{turned_count}");
     }
 }

@@ -101,14 +101,14 @@ impl ZoneBuilder {
 
     /// Writes the components into `zones`, ordered by the first set of each.
     pub fn finish(&mut self, zones: &mut Zones) {
-        let particles = self.parents.len();
+        let particle_count = self.parents.len();
         let Zones { particles: members, particle_ends: ends, has_half_plane: half_planes, zone_by_particle: zone_of } =
             zones;
         members.clear();
         ends.clear();
         half_planes.clear();
         zone_of.clear();
-        zone_of.resize(particles, NO_ZONE);
+        zone_of.resize(particle_count, NO_ZONE);
         // Roots get their numbers in the order of the sets.
         for index in 0..self.sets.len() {
             let (particle, half_plane) = self.sets[index];
@@ -124,7 +124,7 @@ impl ZoneBuilder {
             }
         }
         // Each member gets its root's number and is counted; a particle without a set is its own unnumbered root.
-        for particle in 0..particles {
+        for particle in 0..particle_count {
             #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
             let root = self.find_root(particle as u32) as usize;
             zone_of[particle] = zone_of[root];

@@ -22,7 +22,7 @@ pub(super) fn advance(
     state: &mut State,
 ) -> Result<(), StepError> {
     let (bodies, h) = (system.bodies, system.h);
-    let entries = rhs.len();
+    let entry_count = rhs.len();
     for (dx, velocity) in scratch.dx.iter_mut().zip(&state.velocities) {
         *dx = h * velocity;
     }
@@ -46,25 +46,25 @@ pub(super) fn advance(
             return Err(StepError::Newton { step });
         }
         iteration += 1;
-        for k in 0..entries {
+        for k in 0..entry_count {
             x[k] = state.positions[k] + dx[k];
             v[k] = state.velocities[k] + dv[k];
         }
         system.forces.fill_gradient(bodies, x, v, rhs);
-        for k in 0..entries {
+        for k in 0..entry_count {
             rhs[k] *= minus_h;
             rhs[k] += -(bodies.masses[k / 2] * dv[k]);
         }
         bodies.zero_fixed(rhs);
         system.solve(scratch, rhs);
         let ImplicitScratch { dx, dv, .. } = &mut *scratch;
-        for k in 0..entries {
+        for k in 0..entry_count {
             dv[k] += rhs[k];
             dx[k] = h * (state.velocities[k] + dv[k]);
         }
         update = norm_by_halves(rhs);
     }
-    for k in 0..entries {
+    for k in 0..entry_count {
         state.positions[k] += scratch.dx[k];
         state.velocities[k] += scratch.dv[k];
     }

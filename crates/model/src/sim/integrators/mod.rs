@@ -66,15 +66,15 @@ struct ImplicitScratch {
 impl Stepper {
     /// Creates the scene's integrator.
     pub fn new(scene: &Scene) -> Self {
-        let entries = 2 * scene.particles.len();
+        let entry_count = 2 * scene.particles.len();
         let scratch = || ImplicitScratch {
-            matrix: DMatrix::zeros(entries, entries),
+            matrix: DMatrix::zeros(entry_count, entry_count),
             workspace: Workspace::default(),
-            x: vec![0.0; entries],
-            v: vec![0.0; entries],
-            dx: vec![0.0; entries],
-            dv: vec![0.0; entries],
-            previous_update: vec![0.0; entries],
+            x: vec![0.0; entry_count],
+            v: vec![0.0; entry_count],
+            dx: vec![0.0; entry_count],
+            dv: vec![0.0; entry_count],
+            previous_update: vec![0.0; entry_count],
         };
         let implicit = scene.integrator.is_implicit().then(|| Box::new(scratch()));
         Self {
@@ -83,7 +83,7 @@ impl Stepper {
             // The factor of `F = -1 * g` is a multiplication. A compiler that knew the factor would replace it by a
             // sign flip, which gives a NaN residual a different sign than the original's.
             minus_one: std::hint::black_box(-1.0),
-            gradient: vec![0.0; entries],
+            gradient: vec![0.0; entry_count],
             implicit,
             newton_work: NewtonWork { performed_work: 0, limit: u64::MAX, per_iteration: min_work(scene) },
         }

@@ -75,8 +75,8 @@ impl<'a> NearRows<'a> {
 impl NearbyPairs {
     /// Creates the search for the particles and edges of a scene, if it is cheaper than a check of all pairs.
     pub fn for_large_scene(scene: &Scene, margin: f64) -> Option<Self> {
-        let particles = scene.particles.len();
-        (particles * (particles / 2 + scene.edges.len()) >= MIN_PAIRS).then(|| Self::new(scene, margin))
+        let particle_count = scene.particles.len();
+        (particle_count * (particle_count / 2 + scene.edges.len()) >= MIN_PAIRS).then(|| Self::new(scene, margin))
     }
 
     /// Creates the search for the particles and edges of a scene.

@@ -98,16 +98,16 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
 
 /// Describes how many scenes of a group are accepted, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
 fn describe_share(group: &GroupGrade) -> String {
-    let all = group.scenes.len();
+    let scene_count = group.scenes.len();
     let count = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();
     let (accepted, not_run) = (count(Verdict::Accepted), count(Verdict::NotRun));
-    if accepted == all {
-        return match all {
+    if accepted == scene_count {
+        return match scene_count {
             1 => "its only scene accepted".to_owned(),
             2 => "both scenes accepted".to_owned(),
-            _ => format!("all {all} scenes accepted"),
+            _ => format!("all {scene_count} scenes accepted"),
         };
     }
     let rest = if not_run > 0 { format!(", {not_run} not run") } else { String::new() };
-    format!("{accepted} of {} accepted{rest}", format_count(all as u64, "scene"))
+    format!("{accepted} of {} accepted{rest}", format_count(scene_count as u64, "scene"))
 }

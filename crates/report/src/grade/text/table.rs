@@ -43,8 +43,8 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
         })
         .collect();
     let scenes = column("scenes", true, &|grade| {
-        let accepted = grade.scenes().filter(|scene| scene.verdict.is_accepted()).count();
-        format!("{accepted}/{}", grade.scenes().count())
+        let accepted_count = grade.scenes().filter(|scene| scene.verdict.is_accepted()).count();
+        format!("{accepted_count}/{}", grade.scenes().count())
     });
     let mut base = vec![&name, &score, &verdict];
     if grades.iter().any(|grade| grade.earlier_grade.is_some()) {
@@ -119,11 +119,11 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
 
 /// Returns the text of a cell: `AC`, or the worst verdict and the number of accepted scenes.
 fn group_cell(group: &GroupGrade) -> String {
-    let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
-    if accepted == group.scenes.len() {
+    let accepted_count = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
+    if accepted_count == group.scenes.len() {
         "AC".to_owned()
     } else {
-        format!("{} {accepted}/{}", group.verdict.code(), group.scenes.len())
+        format!("{} {accepted_count}/{}", group.verdict.code(), group.scenes.len())
     }
 }
 

@@ -87,7 +87,7 @@ impl PairGroup {
     #[inline(always)]
     pub fn ensure_computed<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
         let width = Lanes::<S>::COUNT;
-        let edges = bodies.edges.len();
+        let edge_count = bodies.edges.len();
         let mut largest = Lanes::splat(simd, 0.0);
         let is_alone = if self.particles.contains(&first) {
             let lane = 1 << (first - self.particles.start);
@@ -100,14 +100,14 @@ impl PairGroup {
         } else {
             self.particles = first..first + if self.has_moved_edges { 1 } else { width };
             self.moved_particles = 0;
-            self.edges.resize((edges + width) * EDGE_ROW_LENGTH * width + ROW_PADDING, 0.0);
+            self.edges.resize((edge_count + width) * EDGE_ROW_LENGTH * width + ROW_PADDING, 0.0);
             self.half_planes.resize(bodies.points.len() * SHORT_ROW_LENGTH * width, 0.0);
             self.has_moved_edges
         };
         if is_alone {
-            largest = self.compute_edges(simd, lists, first, edge..edges, largest);
+            largest = self.compute_edges(simd, lists, first, edge..edge_count, largest);
         } else {
-            for edge in 0..edges {
+            for edge in 0..edge_count {
                 largest = self.compute_edge(simd, lists, bodies, edge, largest);
             }
         }

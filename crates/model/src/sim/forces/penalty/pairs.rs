@@ -54,23 +54,23 @@ impl PenaltyPairs {
     /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than the sum of their radii and the
     /// thickness, in the order in which their forces are added. In large scenes few other pairs are included.
     pub fn visit_pairs(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
-        let particles = self.radii.len();
+        let particle_count = self.radii.len();
         let edges = &self.edges;
-        let objects = ObjectCounts { particles, edges: edges.len(), half_planes: self.half_planes };
+        let objects = ObjectCounts { particles: particle_count, edges: edges.len(), half_planes: self.half_planes };
         let row = |i: usize| objects.remaining_row(PassCursor::from_first(i));
         let edges_of = |i: usize| (0..edges.len()).filter(move |&edge| !is_end(edges[edge], i));
         if let Some(sweep) = &mut self.sweep {
             sweep.update(x);
             sweep.visit_particles(|i, j| visit(pair(PairKind::ParticleParticle, i, j)));
             sweep.visit_edges(|i, edge| visit(pair(PairKind::ParticleEdge, i, edge)));
-            for i in 0..particles {
+            for i in 0..particle_count {
                 let [.., half_planes] = row(i);
                 half_planes.for_each(|half_plane| visit(pair(PairKind::ParticleHalfPlane, i, half_plane)));
             }
             return;
         }
         let mut found = self.nearby.as_mut().and_then(|nearby| nearby.find(x));
-        for i in 0..particles {
+        for i in 0..particle_count {
             let [others, _, half_planes] = row(i);
             if let Some(found) = &mut found {
                 let [others, edges] = found.next(i);

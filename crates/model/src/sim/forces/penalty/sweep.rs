@@ -44,17 +44,17 @@ pub(super) struct Sweep {
 impl Sweep {
     /// Creates the search among the particles and edges of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let edges = scene.edges.len();
+        let edge_count = scene.edges.len();
         Self {
-            has_four_axes: edges > 0 && scene.particles.len() / PARTICLES_PER_EDGE <= edges,
+            has_four_axes: edge_count > 0 && scene.particles.len() / PARTICLES_PER_EDGE <= edge_count,
             radii: scene.particles.iter().map(|particle| particle.radius).collect(),
             edges: scene.edges.iter().map(|edge| ([edge.first, edge.second], edge.radius)).collect(),
             particle_boxes: Vec::with_capacity(scene.particles.len()),
-            edge_boxes: Vec::with_capacity(edges),
+            edge_boxes: Vec::with_capacity(edge_count),
             rows: Rows::default(),
             has_rows: false,
             sort_buffers: Default::default(),
-            max_upper_ends: Vec::with_capacity(edges),
+            max_upper_ends: Vec::with_capacity(edge_count),
         }
     }
 
