@@ -123,7 +123,7 @@ impl<'a, W: Write> Transcript<'a, W> {
             self.print_message_about("Colsing benchmarked simulation file '", file, "'.");
         }
         let collisions = self.heading.scene.assignment().definition().verdict;
-        self.write(verdict::verdict_lines(outcome, collisions).as_bytes());
+        self.write(verdict::render_verdict(outcome, collisions).as_bytes());
     }
 
     /// Prints the exit handler's lines if the trace could not be opened, in which case there is no banner.

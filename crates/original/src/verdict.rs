@@ -14,7 +14,7 @@ const RESIDUAL_NAMES: [&str; 4] = [
 
 /// Returns the lines after the file has been closed, with a verdict, or without one if grading did not finish.
 /// `collisions` is the assignment's name for the verdict on collisions.
-pub(crate) fn verdict_lines(outcome: &Outcome, collisions: &str) -> String {
+pub(crate) fn render_verdict(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
         return describe_incomplete(&outcome.parity.residuals);
     }

@@ -110,10 +110,10 @@ impl DetectReport<'_> {
             style.paint(TextStyle::Strong, "Polynomials in t, the fraction of the step; each must be positive")
         );
         for curve in &study.curves {
-            text += &polynomial_lines(&curve.role.to_string(), curve, number, style);
+            text += &describe_polynomial(&curve.role.to_string(), curve, number, style);
         }
         if let Some(right) = &study.right_approach {
-            text += &polynomial_lines(
+            text += &describe_polynomial(
                 "approach without the slip in t^3 of the course's formula",
                 &right.curve,
                 number,
@@ -277,7 +277,7 @@ pub(crate) fn render_motion(motion: &PairMotion, number: FormatFn, style: Style)
 }
 
 /// Describes a polynomial, its zeros, and the intervals in which it is positive.
-fn polynomial_lines(name: &str, curve: &StudiedPolynomial, number: FormatFn, style: Style) -> String {
+fn describe_polynomial(name: &str, curve: &StudiedPolynomial, number: FormatFn, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", format_polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];

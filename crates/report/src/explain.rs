@@ -17,7 +17,7 @@ const MAX_LISTED: usize = 3;
 /// Returns the lines of a report about explanations, the likeliest first. The lines that belong to a sentence are below
 /// it, and are indented by two spaces.
 pub fn explanation_texts(explanations: &[Explanation], style: Style) -> Vec<String> {
-    explanations.iter().flat_map(|explanation| explanation_lines(explanation, style)).collect()
+    explanations.iter().flat_map(|explanation| list_explanation_lines(explanation, style)).collect()
 }
 
 /// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
@@ -72,7 +72,8 @@ impl ExplanationParts {
         if !explanation.is_unfinished() {
             details.extend(describe_others(&explanation.same_as));
         }
-        let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
+        let example =
+            explanation.example.as_ref().map(|example| list_example_lines(example, style)).unwrap_or_default();
         Self { is_likely, sentence: describe(explanation), evidence, details, example }
     }
 }
@@ -87,7 +88,7 @@ fn describe_evidence(reproduced: u64, samples: u64) -> String {
     }
 }
 
-fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
+fn list_explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
     let ExplanationParts { is_likely, sentence: what, evidence, details, example } =
         ExplanationParts::new(explanation, style);
     let likely = if is_likely { "likely mistake: " } else { "" };
@@ -120,7 +121,7 @@ fn list_sentences(sentences: &[String]) -> String {
     sentences.iter().map(|sentence| sentence.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
-fn example_lines(example: &Example, style: Style) -> Vec<String> {
+fn list_example_lines(example: &Example, style: Style) -> Vec<String> {
     let given = example.given.iter();
     let given: Vec<String> = given
         .map(|given| format!("{} = {}", style.format_formulas(&to_key(&given.input)), format_vector(&given.value)))

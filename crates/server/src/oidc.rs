@@ -160,7 +160,7 @@ impl Provider {
     }
 
     /// Returns the provider's configuration, which was read at most `age` ago.
-    async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
+    async fn request_metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
         if let Some(KnownConfiguration { requested_at, metadata }) = &*published
             && requested_at.elapsed() < if metadata.is_ok() { age } else { MIN_PAUSE }
@@ -180,8 +180,8 @@ impl Provider {
 
     /// Returns a client with a configuration that was read at most `age` ago. The provider sends people back to the
     /// URL `redirect`.
-    async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
-        let metadata = self.metadata(age).await?;
+    async fn create_client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
+        let metadata = self.request_metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
         let uses_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
         let redirect = RedirectUrl::new(redirect.to_owned()).map_err(untrusted_answer)?;
@@ -196,7 +196,7 @@ impl Provider {
     ///
     /// Fails if the provider does not answer.
     pub async fn sign_in_url(&self, redirect: &str, secrets: SignInSecrets) -> Result<Url, ProviderFault> {
-        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
+        let client = self.create_client(CONFIGURATION_LIFETIME, redirect).await?;
         let SignInSecrets { state, nonce, verifier } = secrets;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
         let flow = CoreAuthenticationFlow::AuthorizationCode;
@@ -219,7 +219,7 @@ impl Provider {
         code: String,
         secrets: SignInSecrets,
     ) -> Result<ProviderPerson, ProviderFault> {
-        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
+        let client = self.create_client(CONFIGURATION_LIFETIME, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
         let request = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
         let answer = request.set_pkce_verifier(PkceCodeVerifier::new(secrets.verifier)).request_async(&http).await;
@@ -232,7 +232,7 @@ impl Provider {
         let claims = match verify_token(&client, token, &nonce) {
             // The provider may have changed its keys, so its configuration is read again.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
-                verify_token(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
+                verify_token(&self.create_client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
             claims => claims,
         };

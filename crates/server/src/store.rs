@@ -196,7 +196,7 @@ impl Store {
     pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
         let artifact = digest_of_file(file).await?;
         // A stored artifact that will not be removed soon is kept.
-        if self.age(&artifact.digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE) {
+        if self.find_age(&artifact.digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE) {
             return Ok(artifact);
         }
         let (mut pieces, mut hasher) = (stream_file(file).await?, Sha256::new());
@@ -221,11 +221,12 @@ impl Store {
     ///
     /// Fails if the folder or bucket cannot be read.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH_FOLDER)).await?.is_some())
+        Ok(self.find_age(&digest.key(KEPT_FOLDER)).await?.is_some()
+            || self.find_age(&digest.key(TRASH_FOLDER)).await?.is_some())
     }
 
     /// Returns the age of a stored object; `None` if it does not exist.
-    async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
+    async fn find_age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
         match self.objects.head(key).await {
             Ok(meta) => Ok(Some(age(&meta))),
             Err(object_store::Error::NotFound { .. }) => Ok(None),

@@ -46,7 +46,7 @@ fn explain_program(
 ) -> Result<Option<ExaminedProgram>> {
     let suite = arguments.suite.map(Assignment::key);
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
-    let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
+    let mut explained = program.examine(program.list_tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
         shrink::add_smallest(&program, explained, QUICK_LIMITS, &|_| true, drawing(arguments))?;
     }

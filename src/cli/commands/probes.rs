@@ -125,7 +125,7 @@ impl ProgramUnderTest {
 
     /// Returns the scenes on which the program is run: the probe scenes of the milestone, the suite's scenes if they
     /// show more, and the scenes that the user named.
-    pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
+    pub(super) fn list_tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
         let mut tasks = Vec::new();
         for (name, scene) in diagnose::probe_scenes(self.assignment) {
             let xml = scene::to_xml(&scene).into_bytes();

@@ -34,7 +34,7 @@ use std::{path::Path, time::Duration};
 
 pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
-    let (own, suite) = (program.tasks(&[])?, program.suite_tasks());
+    let (own, suite) = (program.list_tasks(&[])?, program.suite_tasks());
     let task_lists = if arguments.suite.is_some() { [suite, own] } else { [own, suite] };
     // If the chosen scene belongs to the suite or the milestone, all of these scenes are examined, to find the likely
     // mistakes. A scene in a file is examined alone.

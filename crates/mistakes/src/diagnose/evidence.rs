@@ -247,7 +247,7 @@ fn merge_explanations(reported: &Explanation, traces: &[OpenTrace]) -> Explanati
     subjects.sort_unstable();
     subjects.dedup();
     if let ([subject], PolynomialEvidence::Guess(guess)) = (&subjects[..], found) {
-        let forms = alternative_forms(&reported.details);
+        let forms = list_alternative_forms(&reported.details);
         let is_allowed = |form: &Vec<PolynomialDetail>| {
             let claim = claim_of_form(*subject, guess, form);
             agreeing.iter().all(|symptom| symptom.allowed_statements.contains_key(&claim))
@@ -291,7 +291,7 @@ const fn is_alternative(detail: &Detail) -> bool {
 }
 
 /// Returns the details of a formula once with each of its alternative weights.
-fn alternative_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
+fn list_alternative_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),
         _ => None,

@@ -26,7 +26,7 @@ const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
 /// Returns the keys of mistakes that the traces suggest, but that are in code that a student of this milestone does not
 /// write.
-fn supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
+fn find_supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
         for key in list
@@ -121,7 +121,7 @@ pub fn refuted_keys(
     let is_denied = |key: &str, work: &Cell<u64>| {
         right.iter().any(|scene| can_show(scene, key) && find_effect(scene, key, work) != MistakeEffect::Hidden)
     };
-    let mut refuted: Vec<String> = assignment.map_or_else(Vec::new, |assignment| supplied_keys(assignment, wrong));
+    let mut refuted: Vec<String> = assignment.map_or_else(Vec::new, |assignment| find_supplied_keys(assignment, wrong));
     loop {
         let likely = explain_together(traces(), &refuted);
         // An explanation of unfinished work includes all its empty stages.

@@ -8,7 +8,7 @@ use fosssim_model::assignments::CollisionType;
 /// Returns advice about where to look, if there is a first finding. If an explanation names a wrong stage of a step,
 /// the advice is where that stage probably is. If it names a known mistake or the fault of a polynomial, no advice is
 /// needed, and the list is empty. Otherwise, the advice depends on the kind of the finding.
-pub(crate) fn advice_lines(check: &Check<'_>) -> Vec<&'static str> {
+pub(crate) fn list_advice(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first_finding::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|explanation| explanation::is_specific(explanation)) {
         Some(known) if known.names_stage() => explanation::describe_search_area(known).into_iter().collect(),

@@ -99,12 +99,12 @@ impl ComparedValues {
 pub(crate) fn side_by_side(detail: &FindingDetail) -> ComparedValues {
     let rows = |rows: Vec<Row>| ComparedValues { rows, ..ComparedValues::default() };
     match detail {
-        FindingDetail::MissedCollision { expected } => rows(collision_rows(Some((*expected).into()), None)),
+        FindingDetail::MissedCollision { expected } => rows(compare_collisions(Some((*expected).into()), None)),
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-            rows(collision_rows(None, Some(*actual)))
+            rows(compare_collisions(None, Some(*actual)))
         }
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
-            rows(collision_rows(Some((*expected).into()), Some(*actual)))
+            rows(compare_collisions(Some((*expected).into()), Some(*actual)))
         }
         FindingDetail::PolynomialCount { expected, actual, per_pass } => ComparedValues {
             remarks_after: vec![format!("one pass over all pairs has {per_pass}")],
@@ -206,7 +206,7 @@ fn compare_with_factor(
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
 /// Returns rows with the normals and the times of two logged collisions. A missing collision has no values.
-fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
+fn compare_collisions(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => number_row(name, expected, actual),
         (expected, actual) => {

@@ -183,7 +183,7 @@ view! {
         findings: Vec<CountedView> =
             CountedView::count(check.book(), &check.findings().examples, |kind| check.findings().counts.get(kind)),
         /// Advice that fits the kind of the first finding.
-        advice: Vec<&'static str> = advice::advice_lines(check),
+        advice: Vec<&'static str> = advice::list_advice(check),
         /// Commands with which a reader sees more of the first finding.
         commands: Vec<String> = further_commands::list_commands(check),
         /// Further facts about the trace, such as damage, or bytes after its end.
@@ -198,7 +198,7 @@ view! {
         wrong_steps: u64 = check.findings().wrong_steps,
         /// The numbers of the wrong steps, from 1. Only the first 1000 are listed.
         #[schemars(length(max = MAX_LISTED), inner(range(min = 1)))]
-        wrong_step_numbers: Vec<u32> = steps::step_numbers(check),
+        wrong_step_numbers: Vec<u32> = steps::list_wrong_steps(check),
         /// With --all, the first 1000 wrong steps; with --step, the requested steps; null without these options. Their
         /// findings are those of the official rule book, or those of the fair rules if the official rule book found
         /// none.

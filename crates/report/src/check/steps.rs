@@ -132,7 +132,7 @@ fn official_steps(check: &Check<'_>) -> (Book, Steps) {
 }
 
 /// Returns the numbers of the wrong steps by the official rule book, up to [`MAX_LISTED`].
-pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
+pub(super) fn list_wrong_steps(check: &Check<'_>) -> Vec<u32> {
     check.steps.steps_of_book(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 

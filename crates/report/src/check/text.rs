@@ -47,7 +47,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // If all steps are shown, the first finding is one of them.
     let first = find_first(check).filter(|_| check.steps.shown_steps != StepChoice::All);
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
-    parts.extend(render_section("Where to look", "  - ", &advice::advice_lines(check), style));
+    parts.extend(render_section("Where to look", "  - ", &advice::list_advice(check), style));
     parts.extend(steps::render(check, style).filter(|_| shows_mistakes));
     parts.extend(books::render(check, style));
     parts.extend(render_section("Notes", "  - ", &list_notes(check), style));

@@ -32,7 +32,7 @@ pub(crate) fn render_scenes(grades: &[Grade], skipped_entries: &[SkippedEntry]) 
         })
     });
     let head: Vec<String> = head.split(',').map(str::to_owned).collect();
-    let rest = empty_rows(skipped_entries, &head, "summary");
+    let rest = render_skipped_entries(skipped_entries, &head, "summary");
     render_table(head, rows.chain(rest))
 }
 
@@ -85,12 +85,12 @@ pub fn render_submissions(grades: &[Grade], skipped_entries: &[SkippedEntry]) ->
         }));
         row
     });
-    let rest = empty_rows(skipped_entries, &head, "reason");
+    let rest = render_skipped_entries(skipped_entries, &head, "reason");
     render_table(head, rows.chain(rest))
 }
 
 /// Returns rows for skipped entries. The column `reasons` has the reason why each was skipped.
-fn empty_rows(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
+fn render_skipped_entries(skipped_entries: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &SkippedEntry, column: &str| match column {
         "submission" => escape_formula(&entry.name),
         "verdict" => NOT_GRADED.to_owned(),

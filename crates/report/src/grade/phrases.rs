@@ -99,7 +99,7 @@ pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String>
             vec![capitalize(line.trim_start_matches("first difference: "))]
         }
         None => {
-            let forms = words::explanation::exact_forms(mistake);
+            let forms = words::explanation::list_exact_forms(mistake);
             forms.iter().map(|form| capitalize(form.trim_end_matches('.')) + ".").collect()
         }
     }

@@ -78,7 +78,7 @@ impl CallContent<'_> {
                 &curve.positive_intervals,
                 own,
             ),
-            _ => own_curves(self.step, self.call, study, logged),
+            _ => draw_own_curves(self.step, self.call, study, logged),
         };
         own_decision(logged) + &curves
     }
@@ -111,11 +111,11 @@ fn describe_signs(study: &Study) -> String {
 
 /// Returns whether a set of times neither begins nor ends within the step.
 fn has_no_end_in_step(set: &[Interval]) -> bool {
-    !interval_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
+    !list_interval_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
 /// Returns the curves of the trace's polynomials, drawn like the expected ones.
-fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
+fn draw_own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive_intervals(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
     let curves: Vec<PlottedPolynomial<'_>> =
@@ -132,11 +132,11 @@ fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>
 
 /// Returns the curve of a polynomial that is positive at the times in `positive`.
 fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
-    PlottedPolynomial { name, coefficients, zeros: interval_ends(positive), positive }
+    PlottedPolynomial { name, coefficients, zeros: list_interval_ends(positive), positive }
 }
 
 /// Returns the ends of the intervals in which a polynomial is positive. The finite ends are zeros of the polynomial.
-fn interval_ends(set: &[Interval]) -> Vec<f64> {
+fn list_interval_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|interval| [interval.lo, interval.hi]).collect()
 }
 
@@ -184,7 +184,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
 }
 
 /// Returns all coefficients side by side. Those that differ after division by the common factor are marked.
-fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
+fn list_coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for (index, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();

@@ -205,7 +205,7 @@ fn describe_reason(grade: &Grade) -> String {
 
 /// Returns the reasons why the rule books differ, each with the submissions that it concerns and the number of scenes
 /// in each submission.
-fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
+fn find_disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
         for cause in grade.scenes().filter_map(|scene| scene.difference_cause) {
@@ -242,7 +242,7 @@ fn submission_state(grade: &Grade) -> &'static str {
 }
 
 /// Returns one letter for each of a submission's scenes.
-fn scene_letters(grade: &Grade) -> String {
+fn render_scene_letters(grade: &Grade) -> String {
     let letters = grade.groups.iter().map(|group| group.scenes.iter().map(scene_letter).collect::<String>());
     heat::render_cells(&letters.collect::<Vec<_>>().join("|"))
 }

@@ -60,7 +60,7 @@ impl PackedMotions {
             }
         }
         let rounded =
-            Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact_records(evidence) };
+            Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: select_exact_records(evidence) };
         let blocks = tracks
             .iter()
             .map(|(_, track)| encode_base64(&round_track(track, evidence.layout.particles, &rounded)))
@@ -93,7 +93,7 @@ fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
 }
 
 /// Returns the indices of the records around steps with details. Those around the first wrong steps come first.
-fn exact_records(evidence: &Evidence) -> Vec<usize> {
+fn select_exact_records(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = MAX_EXACT_VALUES / (4 * layout.particles).max(1);
     let per_step = layout.records_per_step() as usize;

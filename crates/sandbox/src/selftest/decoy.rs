@@ -99,7 +99,7 @@ impl Decoy {
     }
 
     /// Returns the state of all decoys, without the working folder.
-    pub(super) fn state(&self) -> io::Result<DecoyState> {
+    pub(super) fn read_state(&self) -> io::Result<DecoyState> {
         let mut state = BTreeMap::new();
         for folder in ["secrets", "scenes", "neighbor"] {
             record_state(&self.root.join(folder), &mut state)?;
@@ -154,17 +154,17 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mut decoy = Decoy::set_up(&folder.path().join("run")).unwrap();
         let reference = folder.path().join("run/secrets/reference.bin");
-        let before = decoy.state().unwrap();
-        assert_eq!(before.find_difference(&decoy.state().unwrap()), None);
+        let before = decoy.read_state().unwrap();
+        assert_eq!(before.find_difference(&decoy.read_state().unwrap()), None);
         std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o600)).unwrap();
         std::fs::set_permissions(&reference, std::fs::Permissions::from_mode(0o644)).unwrap();
         assert!(
-            before.find_difference(&decoy.state().unwrap()).unwrap().ends_with("reference.bin"),
+            before.find_difference(&decoy.read_state().unwrap()).unwrap().ends_with("reference.bin"),
             "even when undone"
         );
-        let before = decoy.state().unwrap();
+        let before = decoy.read_state().unwrap();
         std::fs::write(folder.path().join("run/neighbor/planted"), "x").unwrap();
-        assert!(before.find_difference(&decoy.state().unwrap()).is_some());
+        assert!(before.find_difference(&decoy.read_state().unwrap()).is_some());
         let secret = std::fs::read(&reference).unwrap();
         assert!(decoy.contains_secret(&[b"it is ", &secret[..]].concat()) && !decoy.contains_secret(b"it is"));
         assert!(decoy.is_alive());

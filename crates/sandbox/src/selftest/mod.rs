@@ -190,7 +190,7 @@ impl TestSetup<'_> {
             .map_err(|e| fault(&e))?;
         // Each run gets its own copy of the program, by which processes that survive the run can be recognized.
         let program = decoy.copy_program(&built).map_err(|e| fault(&e))?;
-        let before = decoy.state().map_err(|e| fault(&e))?;
+        let before = decoy.read_state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
             .arguments(decoy.arguments())
             .readable([&decoy.scene])
@@ -228,7 +228,7 @@ impl TestSetup<'_> {
         if !decoy.is_alive() {
             return Err(broken("the attack killed another process".into()));
         }
-        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
+        let after = decoy.read_state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
         if let Some(difference) = before.find_difference(&after) {
             return Err(broken(format!("the attack changed the host: {difference}")));
         }

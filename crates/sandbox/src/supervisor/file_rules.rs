@@ -73,7 +73,7 @@ const SETTINGS_FILES: [&str; 8] = [
 
 /// Returns every path outside of the working folder that must be visible to the program of an order, except for
 /// devices.
-pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
+pub(super) fn list_visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::to_path);
     let tools = if order.allows_tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
     let fixed = LIBRARY_FOLDERS.into_iter().chain(MACHINE_FILES).chain(tools.concat()).map(PathBuf::from);

@@ -118,7 +118,7 @@ fn new_root(order: &RunOrder) -> Result<FileView, Failure> {
     std::fs::create_dir(&old).map_err(failure_at("make a root folder"))?;
     mounts::change_root(&site, &to_c_string(&old)?).map_err(failure_at("change the root folder"))?;
     let mut view = FileView { mounted_places: Vec::new() };
-    let mut readable = file_rules::visible_paths(order);
+    let mut readable = file_rules::list_visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
@@ -217,7 +217,7 @@ fn close_root() -> Result<(), Failure> {
 /// Mounts a file system in memory at the path `folder`, and copies the contents of another folder into it.
 fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let options = CString::new(memory_folder::mount_options(order)).map_err(io::Error::other)?;
+    let options = CString::new(memory_folder::format_mount_options(order)).map_err(io::Error::other)?;
     mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.allows_tools)?;
     memory_folder::copy_contents(from, folder)
 }

@@ -23,7 +23,7 @@ const SPARE_FILES: u64 = 64;
 const BYTES_PER_COPY: usize = 1 << 16;
 
 /// Returns the mount options for the folder of an order.
-pub(super) fn mount_options(order: &RunOrder) -> String {
+pub(super) fn format_mount_options(order: &RunOrder) -> String {
     let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
     let files = order.limits.folder_files.saturating_add(SPARE_FILES);
     format!("mode=700,size={bytes},nr_inodes={files}")

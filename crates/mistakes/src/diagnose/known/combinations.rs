@@ -37,7 +37,7 @@ pub(super) fn find_row_set(
     if !Layout::for_scene(scene).has_polynomials {
         return search.find_combination();
     }
-    let mut found = search.starting_sets().into_iter().find_map(|start| search.complete_set(start))?;
+    let mut found = search.find_starting_sets().into_iter().find_map(|start| search.complete_set(start))?;
     // An empty stage may look like a mistake in another stage.
     if found.rows.iter().any(|row| is_empty_stage(row))
         && let Some(other) = search.complete_set(Vec::new())
@@ -183,7 +183,7 @@ impl<'a> Search<'a> {
     /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of unwritten
     /// detections with which the logged number of polynomials fits whole passes. They are needed if another mistake
     /// hides the first set.
-    fn starting_sets(&self) -> Vec<Vec<&'static Row>> {
+    fn find_starting_sets(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.find_empty_stages()];
         let counts: Vec<usize> =
             self.scan.wrong_steps.iter().map(|sample| sample.records.end.polynomials.len()).collect();

@@ -329,7 +329,7 @@ impl TermFit<'_> {
     /// first.
     fn forms(&self, guesses: &[CoefficientEdits]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
-            let edit_lines = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);
+            let edit_lines = |(edit, _): &(CoefficientEdit, f64)| self.list_details(guess.power, edit);
             let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(edit_lines).collect();
             let with = |form: &Vec<PolynomialDetail>| {
                 edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
@@ -338,7 +338,7 @@ impl TermFit<'_> {
         })
     }
 
-    fn detail_lines(&self, power: usize, edit: &CoefficientEdit) -> Vec<PolynomialDetail> {
+    fn list_details(&self, power: usize, edit: &CoefficientEdit) -> Vec<PolynomialDetail> {
         match edit {
             CoefficientEdit::Factor(factor) => vec![PolynomialDetail::Factor { power, factor: factor.value }],
             CoefficientEdit::Unknown => vec![PolynomialDetail::Unknown { power }],
@@ -358,7 +358,7 @@ impl TermFit<'_> {
         };
         let edits_terms = matches!(guess.edit(), CoefficientEdit::Terms(_));
         let others = guess.edits[1..].iter().filter(|_| edits_terms).filter_map(as_well);
-        self.detail_lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
+        self.list_details(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {

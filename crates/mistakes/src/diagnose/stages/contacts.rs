@@ -35,7 +35,7 @@ pub(super) fn explain_skipped_pairs(facts: &[StepFacts]) -> Option<Explanation> 
 fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
     let logged_count = facts.actual.end.polynomials.len();
     let (mut at, mut skipped) = (0, Vec::new());
-    for (kind, block) in pair_blocks(facts, facts.count_certain_polynomials()) {
+    for (kind, block) in split_by_pair(facts, facts.count_certain_polynomials()) {
         if is_logged_at(facts, &block, at, logged_count) {
             at += block.len();
         } else {
@@ -47,7 +47,7 @@ fn find_skipped_pairs(facts: &StepFacts) -> Option<Vec<(PairKind, f64)>> {
 
 /// Returns the kind of each pair whose polynomials are among the first `size` expected ones, and the range of their
 /// indices.
-fn pair_blocks(facts: &StepFacts, size: usize) -> impl Iterator<Item = (PairKind, Range<usize>)> {
+fn split_by_pair(facts: &StepFacts, size: usize) -> impl Iterator<Item = (PairKind, Range<usize>)> {
     let ends = facts.detections.iter().skip(1).map(|(_, first)| *first).chain([size]);
     let blocks = facts.detections.iter().zip(ends).map(|((pair, first), end)| (pair.kind, *first..end));
     blocks.take_while(move |(_, block)| block.end <= size)
@@ -67,7 +67,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
     if facts.actual.end.polynomials.len() < size {
         return false;
     }
-    let blocks = pair_blocks(facts, size).enumerate();
+    let blocks = split_by_pair(facts, size).enumerate();
     let mut unmatched: Vec<(usize, Range<usize>)> = blocks.map(|(number, (_, block))| (number, block)).collect();
     let pair_count = unmatched.len();
     let (mut at, mut found, mut moved, mut misplaced, mut last) = (0, 0, 0, 0, 0);

@@ -78,7 +78,7 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
 }
 
 /// Returns only the exact forms of polynomials that no known mistake explains, one line per term.
-pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
+pub(crate) fn list_exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
     match explanation.topic {

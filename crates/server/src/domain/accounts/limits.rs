@@ -134,7 +134,7 @@ impl Member {
     }
 
     /// Returns the stored bytes of the person, of the course and of the server, and the limit for each.
-    async fn storage_usage(&self, transaction: &mut Transaction) -> Result<[StorageUsage; 3], Problem> {
+    async fn measure_storage(&self, transaction: &mut Transaction) -> Result<[StorageUsage; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
             "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
@@ -156,7 +156,7 @@ impl Member {
     /// Fails if the database does not answer.
     pub async fn describe_storage(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let [student, course, server] = self.storage_usage(&mut transaction).await?;
+        let [student, course, server] = self.measure_storage(&mut transaction).await?;
         let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];
         let reported = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_full() || *always);
         Ok(reported.map(|(whose, kept, _)| kept.describe(whose)).collect())
@@ -164,7 +164,7 @@ impl Member {
 
     /// Checks that `size` further bytes may be stored.
     pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
-        let [student, course, server] = self.storage_usage(transaction).await?;
+        let [student, course, server] = self.measure_storage(transaction).await?;
         ensure_storage("your uploads and reports", student, size)?;
         ensure_storage("the uploads and reports of this course", course, size)?;
         ensure_storage("the uploads and reports on this server", server, size)

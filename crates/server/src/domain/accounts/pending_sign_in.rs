@@ -60,7 +60,7 @@ impl App {
         // All windows of a browser share one secret.
         let is_secret = |value: &&String| value.len() == 64 && value.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_secret).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
-        let key = self.signing_key().await?;
+        let key = self.find_signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
         let (expires_at, browser_digest, to) =
             (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
@@ -71,7 +71,7 @@ impl App {
 
     /// Returns a secret for a sign-in. Only this service can compute it from the state.
     pub(in crate::domain) async fn compute_secret(&self, kind: &str, state: &str) -> Result<String, Problem> {
-        let key = self.signing_key().await?;
+        let key = self.find_signing_key().await?;
         Ok(to_hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
     }
 
@@ -86,7 +86,7 @@ impl App {
         browser: Option<&String>,
         reject: fn(&'static str) -> Problem,
     ) -> Result<PendingSignIn, Problem> {
-        let key = self.signing_key().await?;
+        let key = self.find_signing_key().await?;
         let (pending, browser_digest) = parse_state(&key, state).ok_or_else(|| reject(UNKNOWN_SIGN_IN))?;
         let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
             AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
@@ -101,7 +101,7 @@ impl App {
     }
 
     /// Returns the key for the service's signatures, which all servers of a database share.
-    async fn signing_key(&self) -> Result<hmac::Key, Problem> {
+    async fn find_signing_key(&self) -> Result<hmac::Key, Problem> {
         let found = self.0.signing_key.get_or_try_init(async || {
             let mut transaction = self.0.database.begin().await?;
             let statement =

@@ -171,7 +171,7 @@ impl RemoteWorker {
     }
 
     /// Returns the task of a job, if the worker holds its lease.
-    async fn leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
+    async fn find_leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
         let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT payload FROM job
             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
@@ -186,7 +186,7 @@ impl RemoteWorker {
     ///
     /// Fails if the worker does not hold the job, or the artifact is not the job's.
     pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
-        let task = self.leased_task(lease).await?;
+        let task = self.find_leased_task(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;
         Ok(self.app.0.store.open(digest).await?)
@@ -198,7 +198,7 @@ impl RemoteWorker {
     ///
     /// Fails if the worker does not hold the job, or the store fails.
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
-        self.leased_task(lease).await?;
+        self.find_leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.with_priority().begin().await?;
         // A transaction that takes the job away waits for this one, and this one waits for it.
@@ -221,7 +221,7 @@ impl RemoteWorker {
     ///
     /// Fails if the worker does not hold the job.
     pub async fn check_lease(&self, lease: &Lease) -> Result<u64, Problem> {
-        self.leased_task(lease).await.map(|_| MAX_FILE_BYTES)
+        self.find_leased_task(lease).await.map(|_| MAX_FILE_BYTES)
     }
 }
 
