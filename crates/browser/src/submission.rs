@@ -132,8 +132,8 @@ impl UploadedSubmission {
         // A scene with two mistakes is listed with both.
         let mistake_view = |(mistake, _): &(Explanation, usize)| -> Value {
             let clearest = grade::clearest_scene(&graded, mistake).map(|scene| &scene.scene);
-            let named = graded.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
-            let others = named.map(|scene| &scene.scene).filter(|name| Some(*name) != clearest);
+            let named_scenes = graded.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
+            let others = named_scenes.map(|scene| &scene.scene).filter(|name| Some(*name) != clearest);
             let (what, worth) = (grade::describe_likely(&graded, mistake), grade::describe_worth(&graded, mistake));
             json!({ "words": what, "worth": worth, "scenes": clearest.into_iter().chain(others).collect::<Vec<_>>() })
         };

@@ -244,7 +244,7 @@ impl<'a> EvidenceBuilder<'a> {
         };
         let mut inspector =
             Inspector::new(self.scene, step, mid_state, (&end.polynomials, end.logged_polynomials), wanted);
-        let done = self.work.step(&mut self.step_run, &mut (&mut inspector, &mut count)).is_ok();
+        let is_complete = self.work.step(&mut self.step_run, &mut (&mut inspector, &mut count)).is_ok();
         let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
         inspector.step.actual_contacts.clone_from(impulses);
         // The inspector must observe first: it keeps the expected mid record, and then makes the step continue with the
@@ -253,7 +253,7 @@ impl<'a> EvidenceBuilder<'a> {
             count.deviations = measure_distances(expected, mid);
         }
         self.evidence.inspected.push(inspector.finish());
-        done.then_some(count)
+        is_complete.then_some(count)
     }
 
     /// Returns whether the state of the reference's own run differs from `end`.

@@ -306,11 +306,11 @@ pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
 /// # Errors
 /// Fails if the file does not exist, is not a regular file, or cannot be accessed.
 pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
-    let shown = || escape(path.as_os_str());
+    let escape_path = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | no_link).open(path);
-    let file = file.map_err(|error| FileError::from_open_error(shown(), error))?;
-    let length = require_regular_file(&file, shown)?.len();
+    let file = file.map_err(|error| FileError::from_open_error(escape_path(), error))?;
+    let length = require_regular_file(&file, escape_path)?.len();
     Ok((file, length))
 }
 

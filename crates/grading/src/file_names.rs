@@ -34,7 +34,7 @@ fn map_chunks(name: &OsStr, text: impl Fn(&str) -> String) -> String {
 }
 
 fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {
-    let mut shown = String::with_capacity(text.len());
+    let mut escaped = String::with_capacity(text.len());
     let mut rest = text.chars().peekable();
     let (mut before, mut marks) = (None, 0);
     while let Some(c) = rest.next() {
@@ -42,14 +42,14 @@ fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {
         let blank = c == ' ' && (matches!(before, None | Some(' ')) || rest.peek().is_none());
         let stray = is_mark(c) && (before.is_none() || marks > MAX_MARKS);
         match c {
-            '\\' => shown.push_str("\\\\"),
-            '\n' | '\r' | '\t' => shown.extend(c.escape_debug()),
-            c if blank || stray || is_hidden(c) || besides(c) => shown.extend(c.escape_unicode()),
-            c => shown.push(c),
+            '\\' => escaped.push_str("\\\\"),
+            '\n' | '\r' | '\t' => escaped.extend(c.escape_debug()),
+            c if blank || stray || is_hidden(c) || besides(c) => escaped.extend(c.escape_unicode()),
+            c => escaped.push(c),
         }
         before = Some(c);
     }
-    shown
+    escaped
 }
 
 fn is_mark(c: char) -> bool {

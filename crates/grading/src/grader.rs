@@ -321,14 +321,14 @@ impl<'a> SubmissionGrading<'a> {
     /// Finds or produces the result of a scene, stores it, and reports it. `number` is the scene's index in the plan.
     /// After the last scene, the grade is reported as well.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneEvent)) {
-        let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
+        let finished_scene = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::without_claim(scene.failure_result(Failure::Panic {
                 stage: None,
                 fault: fault.to_string(),
                 trace: None,
             }))
         });
-        let FinishedScene { result, is_reused: cached, claim } = done;
+        let FinishedScene { result, is_reused: cached, claim } = finished_scene;
         self.record_result(number, &result);
         if let Some(claim) = claim {
             self.shared.store_result(&claim.key, self.submission, &result);

@@ -169,16 +169,16 @@ fn is_consistent(group: &GroupGrade) -> bool {
 
 /// Returns the keys of the likely mistakes that accepted scenes refute. The smallest accepted scenes are tried first.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
-    let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
-    let wrong: Vec<(&Scene, &[Explanation])> = graded()
-        .map(|(graded, task)| (&task.scene, graded.explanations.as_slice()))
+    let graded_scenes = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
+    let wrong: Vec<(&Scene, &[Explanation])> = graded_scenes()
+        .map(|(scene, task)| (&task.scene, scene.explanations.as_slice()))
         .filter(|(_, explanations)| !explanations.is_empty())
         .collect();
     if wrong.is_empty() {
         return Vec::new();
     }
-    let mut right: Vec<&Scene> = graded()
-        .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.difference_cause.is_none())
+    let mut right: Vec<&Scene> = graded_scenes()
+        .filter(|(scene, _)| scene.verdict == Verdict::Accepted && scene.difference_cause.is_none())
         .map(|(_, task)| &task.scene)
         .collect();
     right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);

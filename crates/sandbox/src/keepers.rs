@@ -51,9 +51,9 @@ impl RunKind {
             files: Vec::new(),
             ..order.clone()
         };
-        let named = order.readable.iter().chain(&order.executable).chain(&order.named_paths);
+        let named_paths = order.readable.iter().chain(&order.executable).chain(&order.named_paths);
         let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
-        let files = named.map(|path| identity(&wire::to_path(path))).collect();
+        let files = named_paths.map(|path| identity(&wire::to_path(path))).collect();
         Some(Self { order: common, program: ProgramIdentity::from_path(&wire::to_path(&order.program)), files })
     }
 }

@@ -83,10 +83,10 @@ fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     // Some of these files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| list_entries(folder));
-    let named = entries.filter(|entry| has_program_name(&entry.file_name())).map(|entry| entry.path());
-    let named = named.chain(list_modules(&PYTHON_FOLDERS.map(PathBuf::from)));
+    let named_paths = entries.filter(|entry| has_program_name(&entry.file_name())).map(|entry| entry.path());
+    let named_paths = named_paths.chain(list_modules(&PYTHON_FOLDERS.map(PathBuf::from)));
     let mut files: Vec<PathBuf> =
-        named.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
+        named_paths.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
     files.sort();
     files.dedup();
     files
@@ -141,8 +141,8 @@ pub(super) enum AllowedPath {
 pub(super) fn allow_all_except(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();
-    let mut left = vec![path];
-    while let Some(path) = left.pop() {
+    let mut pending_paths = vec![path];
+    while let Some(path) = pending_paths.pop() {
         if own.contains(&path) {
             continue;
         }
@@ -151,7 +151,7 @@ pub(super) fn allow_all_except(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath>
             continue;
         }
         let real = list_entries(&path).filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
-        left.extend(real.map(|entry| entry.path()));
+        pending_paths.extend(real.map(|entry| entry.path()));
         allowed.push(AllowedPath::Listing(path));
     }
     allowed

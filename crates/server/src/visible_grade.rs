@@ -79,9 +79,9 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<StoredTex
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
-    let shown = report.as_ref().map_or_else(|| Some(empty_grade()), visible_grade);
+    let visible = report.as_ref().map_or_else(|| Some(empty_grade()), visible_grade);
     Ok(StoredTexts {
-        shown: shown.as_ref().map(to_text).unwrap_or_default(),
+        shown: visible.as_ref().map(to_text).unwrap_or_default(),
         failed: report.as_ref().map(list_failed),
         parts: report.as_ref().map(list_parts),
     })

@@ -149,15 +149,15 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     // If this process is root, programs run as another user. That user must be able to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755))
         .context("cannot make the temporary folder readable")?;
-    let mut done = 0;
+    let mut attack_count = 0;
     let is_chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
     let table =
         selftest::run_selected(&backend, Path::new(&arguments.compiler), folder.path(), is_chosen, |promise| {
-            done += 1;
+            attack_count += 1;
             if let selftest::PromiseState::Broken(how) = &promise.state {
                 console::print_error(format!("broken: {}: {how}\n", promise.attack));
-            } else if done % 20 == 0 {
-                console::print_error(format!("{done} attacks so far\n"));
+            } else if attack_count % 20 == 0 {
+                console::print_error(format!("{attack_count} attacks so far\n"));
             }
         })?;
     let mut text = String::new();

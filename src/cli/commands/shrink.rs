@@ -39,10 +39,10 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     // If the chosen scene belongs to the suite or the milestone, all of these scenes are examined, to find the likely
     // mistakes. A scene in a file is examined alone.
     let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
-    let named = task_lists.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
-    let mut tasks = match (named, &arguments.scene) {
+    let chosen_tasks = task_lists.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
+    let mut tasks = match (chosen_tasks, &arguments.scene) {
         (None, Some(scene)) => named_tasks(std::slice::from_ref(scene))?,
-        (named, _) => named.unwrap_or_default(),
+        (tasks, _) => tasks.unwrap_or_default(),
     };
     tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
     if tasks.is_empty() {
@@ -155,13 +155,13 @@ pub(super) fn describe(
 /// Returns the explanation of the cause, but with the example from the smallest scene, and without parts of the cause
 /// that this scene does not show.
 fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
-    let named = own.iter().find(|explanation| is_named_in(cause, std::slice::from_ref(explanation)));
-    let example = named.or(own.first()).and_then(|explanation| explanation.example.clone());
+    let named_explanation = own.iter().find(|explanation| is_named_in(cause, std::slice::from_ref(explanation)));
+    let example = named_explanation.or(own.first()).and_then(|explanation| explanation.example.clone());
     // If the cause is unwritten stages, the explanation lists the stages that the scene shows.
     let is_shown = |key: &&String| own.iter().any(|other| other.key == **key || other.same_as.contains(key));
     let same_as = cause.same_as.iter().filter(|key| cause.is_unfinished() && is_shown(key)).cloned().collect();
     let mut topic = cause.topic.clone();
-    let details = match (&mut topic, named) {
+    let details = match (&mut topic, named_explanation) {
         // Many formulas agree with a single wrong polynomial.
         (ExplanationTopic::Polynomials { .. }, _) if cause.samples < 2 => Vec::new(),
         // The numbers that describe a wrong stage are those of this scene.

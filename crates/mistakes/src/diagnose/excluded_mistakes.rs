@@ -27,7 +27,7 @@ const MAX_STEP_POLYNOMIALS: usize = 200_000;
 /// Returns the keys of mistakes that the traces suggest, but that are in code that a student of this milestone does not
 /// write.
 fn find_supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
-    let mut named: BTreeMap<String, bool> = BTreeMap::new();
+    let mut named_keys: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
         for key in list
             .iter()
@@ -37,10 +37,10 @@ fn find_supplied_keys(assignment: Assignment, wrong: &[(&Scene, &[Explanation])]
                 Some(row) => is_written_by_student(row, assignment),
                 None => continue,
             };
-            *named.entry(key).or_default() |= is_own;
+            *named_keys.entry(key).or_default() |= is_own;
         }
     }
-    named.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
+    named_keys.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
 }
 
 /// Returns whether, for each trace with values that are not finite, one of the likely mistakes alone leads to such

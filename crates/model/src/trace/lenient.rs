@@ -360,9 +360,9 @@ impl<R: Read> LenientReader<R> {
             self.record_damage(offset, TraceFormatError::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
-        let mut done = 0;
-        while done < entries && !self.has_failed {
-            let (window, max_count) = (self.source.window(), entries - done);
+        let mut read_count = 0;
+        while read_count < entries && !self.has_failed {
+            let (window, max_count) = (self.source.window(), entries - read_count);
             let (used, decoded_count, trimmed) = if self.is_full(frame) {
                 decode::skip_short_polynomials(window, max_count)
             } else if self.is_strict {
@@ -373,18 +373,18 @@ impl<R: Read> LenientReader<R> {
             self.source.consume(used);
             self.check_memory(frame, offset)?;
             frame.is_unchanged &= !trimmed;
-            done += decoded_count;
+            read_count += decoded_count;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
                 let what = TraceFormatError::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(ReadFailure::Memory, offset, what));
             }
-            if done < entries && !decode::has_short_polynomial(&mut self.source) {
-                self.read_polynomial(frame, done, count)?;
-                done += 1;
+            if read_count < entries && !decode::has_short_polynomial(&mut self.source) {
+                self.read_polynomial(frame, read_count, count)?;
+                read_count += 1;
             }
         }
         // Every polynomial after the end has size 0.
-        let missing = entries - done;
+        let missing = entries - read_count;
         if missing > 0 && entries > STORABLE_POLYNOMIALS {
             let left = self.source.offset() - begin;
             let what = TraceFormatError::CountBeyondEnd { list, count, needs: 4 * entries, left };

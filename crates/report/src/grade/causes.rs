@@ -43,8 +43,8 @@ pub fn group_by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
 
 /// Returns the scene that shows a mistake most clearly; `None` if no scene shows it.
 pub fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
-    let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
-    named.min_by_key(|scene| clarity_rank(scene))
+    let named_scenes = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
+    named_scenes.min_by_key(|scene| clarity_rank(scene))
 }
 
 /// Returns the best rank that one of these explanations has among the likely mistakes. Explanations that are not likely

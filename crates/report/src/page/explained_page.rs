@@ -94,9 +94,9 @@ impl ExplainedContent<'_> {
         let trace = |(number, (case, card)): (usize, ExplainedCase<'_>)| {
             let key = scene_key(&format!("{number} {}", case.scene));
             let mistakes = mistakes(&case.explanations, card.is_some_and(Card::has_values), None);
-            let shown = card.map_or_else(|| mistakes.clone(), |card| card.render_with_mistakes(&key, &mistakes));
+            let article = card.map_or_else(|| mistakes.clone(), |card| card.render_with_mistakes(&key, &mistakes));
             let motion = card.map(|card| card.data(&key)).unwrap_or_default();
-            Trace { case: &cases[number], key, open: first == Some(number), shown, motion }
+            Trace { case: &cases[number], key, open: first == Some(number), shown: article, motion }
         };
         all.into_iter().enumerate().map(trace).collect()
     }

@@ -135,7 +135,7 @@ pub fn run_selected(
     write_file(&sources.join("attack.h"), header).map_err(folder_error)?;
 
     let next = AtomicUsize::new(0);
-    let done = Mutex::new((Vec::new(), &mut report));
+    let collected = Mutex::new((Vec::new(), &mut report));
     let workers = std::thread::available_parallelism().map_or(2, usize::from);
     std::thread::scope(|scope| {
         for _ in 0..workers {
@@ -145,14 +145,14 @@ pub fn run_selected(
                         TestSetup { backend, compiler, sources: &sources, programs: &programs, folder: &folder };
                     let state = setup.try_attack(attack).unwrap_or_else(|state| state);
                     let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), state };
-                    let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                    (done.1)(&promise);
-                    done.0.push(promise);
+                    let mut collected = collected.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                    (collected.1)(&promise);
+                    collected.0.push(promise);
                 }
             });
         }
     });
-    let (mut promises, _) = done.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
+    let (mut promises, _) = collected.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner);
     promises.sort_by(|left, right| left.attack.cmp(&right.attack));
     Ok(PromiseTable { promises })
 }

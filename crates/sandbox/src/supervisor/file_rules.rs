@@ -74,10 +74,10 @@ const SETTINGS_FILES: [&str; 8] = [
 /// Returns every path outside of the working folder that must be visible to the program of an order, except for
 /// devices.
 pub(super) fn list_visible_paths(order: &RunOrder) -> Vec<PathBuf> {
-    let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::to_path);
+    let named_paths = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::to_path);
     let tools = if order.allows_tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
     let fixed = LIBRARY_FOLDERS.into_iter().chain(MACHINE_FILES).chain(tools.concat()).map(PathBuf::from);
-    fixed.chain(named).collect()
+    fixed.chain(named_paths).collect()
 }
 
 /// The places outside of the working folder that the program may access. Each is open, and has the program's rights

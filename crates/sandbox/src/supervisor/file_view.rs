@@ -284,9 +284,9 @@ impl FileView {
     /// host has no accessible file at the path.
     fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
         let mut real = PathBuf::from("/");
-        let mut left: VecDeque<OsString> = path_components(path);
+        let mut remaining_parts: VecDeque<OsString> = path_components(path);
         let mut links = 0;
-        while let Some(name) = left.pop_front() {
+        while let Some(name) = remaining_parts.pop_front() {
             if name == ".." {
                 real.pop();
                 continue;
@@ -310,7 +310,7 @@ impl FileView {
                 real = PathBuf::from("/");
             }
             for name in path_components(&target).into_iter().rev() {
-                left.push_front(name);
+                remaining_parts.push_front(name);
             }
         }
         Ok(Some(real))

@@ -41,15 +41,15 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
         (SELECT coalesce(max(id), 0) FROM result) AS results";
     let row = transaction.one(statement, values![]).await?;
     metrics.submissions = row.int("submissions")?;
-    let mut graded = row.int("results")?;
+    let mut graded_count = row.int("results")?;
     // These events are rare. A job that was given up also has a result, but it was not graded.
     for kind in ["failed try", "late answer", "buried"] {
         let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
-        graded -= if kind == "buried" { n } else { 0 };
+        graded_count -= if kind == "buried" { n } else { 0 };
         metrics.events.push((kind.to_owned(), n));
     }
-    metrics.events.push(("graded".to_owned(), graded));
-    metrics.jobs.push(("done".to_owned(), graded));
+    metrics.events.push(("graded".to_owned(), graded_count));
+    metrics.jobs.push(("done".to_owned(), graded_count));
     for (kind, counts) in [(JobKind::Grading, &mut metrics.jobs), (JobKind::Passback, &mut metrics.scores)] {
         let statement = "SELECT (SELECT count(*) FROM job WHERE lane = ? AND state = 'waiting') AS waiting,
             (SELECT count(*) FROM job WHERE lane = ? AND state = 'running') AS running,

@@ -44,8 +44,8 @@ pub(super) fn handle<O: Observer>(
     observer: &mut O,
 ) -> Result<(), StepError> {
     let mut round = 0;
-    let mut done = false;
-    while i64::from(round) < i64::from(max_iterations) && !done {
+    let mut is_settled = false;
+    while i64::from(round) < i64::from(max_iterations) && !is_settled {
         detect(
             bodies,
             detector,
@@ -56,7 +56,7 @@ pub(super) fn handle<O: Observer>(
             observer,
         )?;
         if scratch.hits.is_empty() {
-            done = true;
+            is_settled = true;
         } else {
             // All responses of a round are computed from the positions at its start.
             scratch.round_start.clone_from(&state.positions);
@@ -68,7 +68,7 @@ pub(super) fn handle<O: Observer>(
             round += 1;
         }
     }
-    if done {
+    if is_settled {
         pass_on_synchronization(observer, state);
         return Ok(());
     }

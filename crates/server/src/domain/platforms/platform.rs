@@ -219,8 +219,8 @@ impl Staff {
             return Ok(RosterRead::default());
         }
         let statement = "SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account";
-        let known = transaction.rows(statement, values![platform_course]).await?;
-        for row in &known {
+        let known_members = transaction.rows(statement, values![platform_course]).await?;
+        for row in &known_members {
             let account = row.int("account")?;
             if present.contains(&account) || account == self.account.id {
                 continue;

@@ -84,9 +84,9 @@ impl Member {
     ///
     /// Fails if the database does not answer.
     pub async fn attempt_changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
-        let graded = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
-        let graded: Vec<(&Submission, i64)> = graded.collect();
-        let visible_attempts = graded.iter().filter(|(submission, _)| !submission.is_withheld);
+        let graded_attempts = attempts.iter().filter_map(|attempt| Some((attempt, attempt.grade.as_ref()?.result)));
+        let graded_attempts: Vec<(&Submission, i64)> = graded_attempts.collect();
+        let visible_attempts = graded_attempts.iter().filter(|(submission, _)| !submission.is_withheld);
         let stored_results =
             self.stored_results(&visible_attempts.map(|(_, result)| *result).collect::<Vec<_>>()).await?;
         let change = |pair: &[(&Submission, i64)]| {
@@ -95,7 +95,7 @@ impl Member {
             let change = AttemptChange::compare(earlier.number, stored_results.get(&old)?, stored_results.get(&new)?);
             Some((later.id, change))
         };
-        Ok(graded.windows(2).filter_map(change).collect())
+        Ok(graded_attempts.windows(2).filter_map(change).collect())
     }
 }
 

@@ -77,8 +77,9 @@ impl OwnWork {
         let closes_at = due.map(|due| policy.closes_at(due));
         let attempts = assignment.settings.attempts as usize;
         let points = |submission: &Submission| submission.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
-        let graded = submissions.iter().rev().filter_map(|submission| Some((points(submission)?, submission)));
-        let best = graded.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
+        let graded_submissions =
+            submissions.iter().rev().filter_map(|submission| Some((points(submission)?, submission)));
+        let best = graded_submissions.max_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, one)| one.clone());
         Ok(Self {
             due,
             is_late: has_passed(due),

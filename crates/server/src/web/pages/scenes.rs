@@ -32,8 +32,8 @@ pub(super) fn wrong_scenes(
 pub(super) fn describe_change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
         let more = scenes.len().saturating_sub(MAX_NAMED);
-        let named = scenes[..scenes.len() - more].join(", ");
-        if more > 0 { format!("{named} and {more} more") } else { named }
+        let named_scenes = scenes[..scenes.len() - more].join(", ");
+        if more > 0 { format!("{named_scenes} and {more} more") } else { named_scenes }
     };
     let since = format!("Since submission {},", change.since);
     match (&change.newly_right[..], &change.newly_wrong[..]) {
