@@ -40,19 +40,15 @@ impl FurtherCommands<'_> {
         if let (Some(trace), Some(name)) = (kept_trace, self.scene_argument(&scene.scene)) {
             lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
-        let wrong_count = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
+        let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
         let is_default = is_whole && self.arguments.suite == Assignment::DEFAULT.key();
-        let run_count = grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun).count();
-        if run_count > 1 && wrong_count == grade.scenes().count() && is_default {
+        let ran = grade.scenes().filter(|scene| scene.verdict != Verdict::NotRun).count();
+        if ran > 1 && wrong == grade.scenes().count() && is_default {
             let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);
             let others: Vec<&str> = others.map(Assignment::key).collect();
             lines.push(format!("if this program belongs to another milestone: --suite {}", others.join(", ")));
         }
-        if wrong_count > 1
-            && wrong_count < grade.scenes().count()
-            && !self.arguments.failed
-            && self.submissions.len() == 1
-        {
+        if wrong > 1 && wrong < grade.scenes().count() && !self.arguments.failed && self.submissions.len() == 1 {
             lines.push(format!("$ {} --failed", self.grade_command(submission)));
         }
         lines

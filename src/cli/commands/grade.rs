@@ -354,12 +354,11 @@ impl GradingSession<'_> {
                 if self.cancellation.is_canceled() {
                     return Ok(exit::INTERRUPTED);
                 }
-                let current_stamps = find_change_stamps(submissions);
-                let have_changed = current_stamps != graded_stamps;
-                if have_changed && current_stamps == previous_stamps && current_stamps.iter().all(Option::is_some) {
+                let stamps = find_change_stamps(submissions);
+                if stamps == previous_stamps && stamps != graded_stamps && stamps.iter().all(Option::is_some) {
                     break;
                 }
-                previous_stamps = current_stamps;
+                previous_stamps = stamps;
             }
         }
     }

@@ -74,8 +74,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         console::print(&message)?;
         return Ok(exit::ACCEPTED);
     }
-    let folder =
-        tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("cannot create a temporary folder")?;
+    let folder = tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("cannot create a folder")?;
     let plan = plan::load_suite(DEMO_SUITE, Path::new(".")).context("cannot load the demo's suite")?;
     let backend = require_backend(false)?;
     let cancellation = cancellation_by_signals();
@@ -144,11 +143,9 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         let unknown = || format!("`doctor` lists no layer {name}{}", suggestions::suggest(name, names));
         backend = backend.without_layer(layer.with_context(unknown)?)?;
     }
-    let folder =
-        tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("cannot create a temporary folder")?;
+    let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("cannot create a folder")?;
     // If this process is root, programs run as another user. That user must be able to reach the folder.
-    fs::set_permissions(folder.path(), Permissions::from_mode(0o755))
-        .context("cannot make the temporary folder readable")?;
+    fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("cannot make the folder readable")?;
     let mut attack_count = 0;
     let is_chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
     let table =

@@ -44,10 +44,8 @@ impl Pages {
         let (cards, temporary) = match folder {
             Some(folder) => (FilePlace::new(folder, "cards"), None),
             None => {
-                let temporary = tempfile::Builder::new()
-                    .prefix("fosssim-cards-")
-                    .tempdir()
-                    .context("cannot create a temporary folder")?;
+                let temporary =
+                    tempfile::Builder::new().prefix("fosssim-cards-").tempdir().context("no temporary folder")?;
                 (FilePlace::new(temporary.path(), ""), Some(temporary))
             }
         };

@@ -45,9 +45,8 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     }
     let pages = find_requested_pages(arguments, folder, arguments.programs.len() > 1, reports)?;
     let paths: Vec<&Path> = arguments.programs.iter().map(PathBuf::as_path).collect();
-    let named_folders = paths.iter().zip(distinct_names(&paths));
-    let mut grades: Vec<Grade> =
-        named_folders.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
+    let named = paths.iter().zip(distinct_names(&paths));
+    let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     earlier_grades::add_earlier_grades(earlier, &mut grades);
     let skipped = earlier_grades::list_missing(earlier, grades.iter().map(|grade| grade.submission.as_str()));
     for folder in &paths {
@@ -107,12 +106,11 @@ fn describe_other_traces(folder: &Folder, scenes: &[String]) -> Option<String> {
     };
     let mut strays: Vec<&String> = found.iter().filter(is_stray).collect();
     strays.sort_unstable();
-    let named_strays: Vec<&str> = strays.iter().take(MAX_NAMED).map(|name| name.as_str()).collect();
+    let named: Vec<&str> = strays.iter().take(MAX_NAMED).map(|name| name.as_str()).collect();
     let ellipsis = if strays.len() > MAX_NAMED { ", ..." } else { "" };
     let verb = if strays.len() == 1 { "belongs" } else { "belong" };
     let count = format_count(strays.len() as u64, "trace");
-    (!strays.is_empty())
-        .then(|| format!("{count} {verb} to no scene of the suite: {}{ellipsis}", named_strays.join(", ")))
+    (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{ellipsis}", named.join(", ")))
 }
 
 /// The result of a scene, and a warning if files were skipped.
