@@ -11,7 +11,7 @@ pub enum Part {
     Integrator(Integrator),
     /// The gradient of a force.
     Force(ForceKind),
-    /// The second derivatives of a force, by positions and by velocities.
+    /// The second derivatives of a force, with respect to positions and velocities.
     Jacobians(ForceKind),
     /// The detection at the end of a step.
     SimpleDetection(PairKind),

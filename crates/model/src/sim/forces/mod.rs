@@ -90,7 +90,7 @@ impl Forces {
         }
     }
 
-    /// Adds the derivatives of all gradients by the velocities to `matrix`.
+    /// Adds the derivatives of all gradients with respect to velocities to `matrix`.
     pub fn add_velocity_hessians(&self, bodies: &Bodies, x: &[f64], matrix: &mut DMatrix<f64>) {
         for force in &self.list {
             match *force {
