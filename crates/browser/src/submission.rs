@@ -118,7 +118,13 @@ impl UploadedSubmission {
             let (points, max_points) = (grade::format_optional_points(points), grade::format_points(max_points));
             json!({ "points": points, "of": max_points })
         };
-        let scenes: Vec<Value> = graded.scenes().map(|scene| points(scene.points, scene.max_points)).collect();
+        let scene_view = |scene: &SceneGrade| -> Value {
+            let likely = scene.corrected_explanations.first().map(|mistake| grade::describe_in_scene(scene, mistake));
+            let mut view = points(scene.points, scene.max_points);
+            view["likely"] = json!(likely);
+            view
+        };
+        let scenes: Vec<Value> = graded.scenes().map(scene_view).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause_view = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
