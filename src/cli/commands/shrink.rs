@@ -165,7 +165,7 @@ fn add_example(cause: &Explanation, own: &[Explanation]) -> Explanation {
         // Many formulas agree with a single wrong polynomial.
         (ExplanationTopic::Polynomials { .. }, _) if cause.samples < 2 => Vec::new(),
         // The numbers that describe a wrong stage are those of this scene.
-        (ExplanationTopic::Stage(_), Some(own)) => own.details.clone(),
+        (ExplanationTopic::Stage(_), Some(own)) if own.names_stage() => own.details.clone(),
         (ExplanationTopic::Pairs(all), Some(Explanation { topic: ExplanationTopic::Pairs(own), .. })) => {
             all.limit_to(own);
             cause.details.clone()
