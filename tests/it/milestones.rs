@@ -196,7 +196,11 @@ fn a_grade_names_what_its_scenes_show_together() {
     let cases = [
         ("penalty-first-half-plane-only", "t2m1", "The penalty force is computed for the first half-plane only."),
         ("near-pairs-half-planes-doubled", "t2m3@1", "all pairs of a particle and a half-plane are reported twice."),
-        ("jacobian-drag-missing", "t1m3", "The derivative of drag by velocities is not written yet, or adds nothing."),
+        (
+            "jacobian-drag-missing",
+            "t1m3",
+            "The derivative of drag with respect to velocities is not written yet, or adds nothing.",
+        ),
         ("gravitation-no-masses,spring-no-rest-length", "t1m3", "The gravitational force ignores the masses."),
         ("gravity-missing", "t1m1", "The update of velocities in explicit Euler is missing."),
     ];

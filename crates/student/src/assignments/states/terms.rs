@@ -132,11 +132,11 @@ terms! {
             &[SUM, FORCE, PAIR, VECTOR, DISTANCE] ;
     }
     Part::Jacobians(ForceKind::Spring) => {
-        JacobianSprings "jacobian-springs" "The derivative of the spring force": "the block by positions or velocities"
-            [0 0 0] false &[BLOCKS] ;
-        JacobianSpring "jacobian-spring" "The derivative of the spring force by positions":
+        JacobianSprings "jacobian-springs" "The derivative of the spring force":
+            "the block with respect to positions or velocities" [0 0 0] false &[BLOCKS] ;
+        JacobianSpring "jacobian-spring" "The derivative of the spring force with respect to positions":
             "k (n n^T + (l - l0) / l (I - n n^T)) - D" [0 0 0] true &[SUM, BLOCKS, &[Slip::OtherMatrix] ];
-        JacobianElastic "jacobian-elastic" "The derivative of a spring's elastic part by positions":
+        JacobianElastic "jacobian-elastic" "The derivative of a spring's elastic part with respect to positions":
             "k (n n^T + (l - l0) / l (I - n n^T))" [0 0 0] false &[SUM, BLOCKS, DISTANCE] ;
         JacobianElasticAlong "jacobian-elastic-along"
             "The term along the spring in the derivative of its elastic part": "k n n^T" [0 0 0] false
@@ -144,20 +144,21 @@ terms! {
         JacobianElasticAcross "jacobian-elastic-across"
             "The term across the spring in the derivative of its elastic part": "k (l - l0) / l (I - n n^T)"
             [0 0 -1] false &[SUM, DISTANCE, &[Slip::Absolute] ];
-        JacobianDamping "jacobian-damping" "The derivative of a spring's damping by positions":
+        JacobianDamping "jacobian-damping" "The derivative of a spring's damping with respect to positions":
             "-D with D = -b / l ((n w^T + (n . w) I) (I - n n^T)) and w = v_b - v_a" [0 0 -1] false
             &[SUM, BLOCKS, DISTANCE] ;
         JacobianDampingOuter "jacobian-damping-outer"
-            "The outer product with the velocity in the derivative of a spring's damping by positions":
+            "The outer product with the velocity in the derivative of a spring's damping with respect to positions":
             "n w^T (using w n^T instead makes no difference)" [0 0 0] false &[SUM] ;
         JacobianDampingScalar "jacobian-damping-scalar"
-            "The term of the speed along the spring in the derivative of its damping by positions": "(n . w) I"
-            [0 0 0] false &[SUM] ;
-        JacobianVelocity "jacobian-velocity" "The derivative of a spring's damping by velocities": "b n n^T" [0 0 0]
-            true &[SUM, BLOCKS, DISTANCE, &[Slip::OtherMatrix] ];
+            "The term of the speed along the spring in the derivative of its damping with respect to positions":
+            "(n . w) I" [0 0 0] false &[SUM] ;
+        JacobianVelocity "jacobian-velocity" "The derivative of a spring's damping with respect to velocities":
+            "b n n^T" [0 0 0] true &[SUM, BLOCKS, DISTANCE, &[Slip::OtherMatrix] ];
     }
     Part::Jacobians(ForceKind::Gravitation) => {
-        JacobianGravitation "jacobian-gravitation" "The derivative of the gravitational force by positions":
+        JacobianGravitation "jacobian-gravitation"
+            "The derivative of the gravitational force with respect to positions":
             "G m_a m_b / r^3 (I - 3 n n^T)" [2 0 -3] true &[SUM, BLOCKS, DISTANCE, &[Slip::OtherMatrix] ];
         JacobianGravitationAlong "jacobian-gravitation-along"
             "The term along the line of the particles in the derivative of the gravitational force": "3 n n^T" [0 0 0]
@@ -167,8 +168,9 @@ terms! {
             false &[SUM] ;
     }
     Part::Jacobians(ForceKind::Drag) => {
-        JacobianDrag "jacobian-drag" "The derivative of drag by velocities": "b on the diagonal" [0 0 0] true &[SUM,
-            EACH, &[Slip::Assigned, Slip::Mass(1), Slip::OtherMatrix, Slip::XOnly, Slip::YOnly, Slip::Step(1)] ];
+        JacobianDrag "jacobian-drag" "The derivative of drag with respect to velocities":
+            "b on the diagonal" [0 0 0] true &[SUM, EACH,
+            &[Slip::Assigned, Slip::Mass(1), Slip::OtherMatrix, Slip::XOnly, Slip::YOnly, Slip::Step(1)] ];
     }
     Part::Integrator(Integrator::ExplicitEuler) => {
         Explicit "explicit" "Explicit Euler": "x += h v, v += h F / m" [0 0 0] true STEP;
@@ -195,10 +197,10 @@ terms! {
         LinearRight "linear-right" "The right-hand side of linearized implicit Euler": "h F" [0 1 0] false RIGHT;
         LinearMass "linear-mass" "The mass in the matrix of linearized implicit Euler": "M" [1 0 0] false &[SUM,
             &[Slip::Mass(-1), Slip::Mass(1)] ];
-        LinearHx "linear-hx" "The derivative by positions in the matrix of linearized implicit Euler": "h^2 Hx" [0 2 0]
-            false MATRIX;
-        LinearHv "linear-hv" "The derivative by velocities in the matrix of linearized implicit Euler": "h Hv" [0 1 0]
-            false MATRIX;
+        LinearHx "linear-hx" "The derivative with respect to positions in the matrix of linearized implicit Euler":
+            "h^2 Hx" [0 2 0] false MATRIX;
+        LinearHv "linear-hv" "The derivative with respect to velocities in the matrix of linearized implicit Euler":
+            "h Hv" [0 1 0] false MATRIX;
     }
     Part::Integrator(Integrator::ImplicitEuler) => {
         Implicit "implicit" "Implicit Euler": "Newton's method for v = v_0 + h F(x_0 + h v, v) / m" [0 0 0] true SYSTEM;
@@ -214,10 +216,10 @@ terms! {
             [1 0 0] false &[&[Slip::Missing, Slip::Doubled, Slip::Halved, Slip::Mass(-1), Slip::Step(1)]];
         ImplicitMass "implicit-mass" "The mass in the matrix of implicit Euler": "M" [1 0 0] false
             &[&[Slip::Missing, Slip::Doubled, Slip::Halved, Slip::Mass(-1), Slip::Mass(1)]];
-        ImplicitHx "implicit-hx" "The derivative by positions in the matrix of implicit Euler": "h^2 Hx" [0 2 0] false
-            MATRIX;
-        ImplicitHv "implicit-hv" "The derivative by velocities in the matrix of implicit Euler": "h Hv" [0 1 0] false
-            MATRIX;
+        ImplicitHx "implicit-hx" "The derivative with respect to positions in the matrix of implicit Euler":
+            "h^2 Hx" [0 2 0] false MATRIX;
+        ImplicitHv "implicit-hv" "The derivative with respect to velocities in the matrix of implicit Euler":
+            "h Hv" [0 1 0] false MATRIX;
     }
     Part::Penalty(PairKind::ParticleParticle) => {
         Penalty "penalty" "The penalty force": "k (|n| - r - h) u" [0 0 0] false WHOLE_PENALTY;
