@@ -283,7 +283,7 @@ mod tests {
     fn a_scene_that_shows_only_an_earlier_mistake_is_a_repetition() {
         let start = shrunk("decision-open-start", "decision-open-start", &two_bodies("0"));
         let interval = shrunk("decision-open-start", "decision-open-interval", &two_bodies("0.5"));
-        assert!(!start.is_repetition(&[]) && interval.is_repetition(&[start.clone()]));
+        assert!(!start.is_repetition(&[]) && interval.is_repetition(std::slice::from_ref(&start)));
         let other = shrunk("pp-radii-squared-apart", "pp-radii-squared-apart", &two_bodies("0.5"));
         assert!(!other.is_repetition(&[start]));
     }
@@ -297,6 +297,6 @@ mod tests {
         };
         let same = unexplained(shrunk("decision-open-start", "decision-open-start", &two_bodies("0")));
         let other = unexplained(shrunk("pp-radii-squared-apart", "pp-radii-squared-apart", &two_bodies("0.5")));
-        assert!(same.is_repetition(&[earlier.clone()]) && !other.is_repetition(&[earlier]));
+        assert!(same.is_repetition(std::slice::from_ref(&earlier)) && !other.is_repetition(&[earlier]));
     }
 }
