@@ -24,11 +24,12 @@ fn name_areas(fault: &StageFault) -> String {
     };
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        // A result of an earlier version does not name the part.
+        None => "state".to_owned(),
         _ => areas.concat(),
     };
-    let areas = if fault.kind().is_some() { areas.replace("collision response", "response") } else { areas };
     match fault.kind() {
-        Some(kind) => format!("{} {areas}", capitalize(kind.name())),
+        Some(kind) => format!("{} {}", capitalize(kind.name()), areas.replace("collision response", "response")),
         None => capitalize(&areas),
     }
 }

@@ -49,7 +49,7 @@ fn guesses() -> Vec<Guess> {
 }
 
 /// Returns wrong changes of states.
-fn changes() -> [WrongChange; 6] {
+fn changes() -> [WrongChange; 7] {
     let velocity = Quantity::Velocity;
     let change = |parts: &[Part]| WrongChange {
         quantity: velocity,
@@ -73,6 +73,7 @@ fn changes() -> [WrongChange; 6] {
         WrongChange { ratio: ChangeRatio::Opposite, ..edges },
         WrongChange { ratio: ChangeRatio::Other, ..change(&[Part::Penalty(PairKind::ParticleHalfPlane)]) },
         WrongChange { ratio: ChangeRatio::Other, ..change(&all) },
+        change(&[]),
     ]
 }
 
